@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+
+#include "engine/mesh/indexed_mesh.h"
+
+namespace geosis {
+
+/// What a mesh is, by index.
+struct TopologyReport {
+  std::int64_t vertices = 0, triangles = 0;
+  std::int64_t components = 0;
+  std::int64_t euler = 0;  ///< V - E + F
+  std::int64_t genus = 0;  ///< sum over components, each closed over its boundary loops
+  std::int64_t boundary_loops = 0;
+  bool manifold = false;  ///< every edge in one or two triangles, oriented alike; one fan at every vertex
+};
+
+/// cost   O(triangles log triangles), no hash map; 24 bytes a triangle.
+TopologyReport report_topology(const IndexedMesh& mesh);
+
+}  // namespace geosis

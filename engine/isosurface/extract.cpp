@@ -1,0 +1,1 @@
+#include "engine/isosurface/extract.h"

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "engine/pipeline/reconstruct.h"
+#include "engine/volume/formats/import.h"
+#include "server/documents/json_text.h"
+
+namespace geosis::server {
+
+/// Where a level's bytes are, relative to the manifest.
+struct ManifestUrls {
+  /// The whole level in one file; nullopt when there is no such file.
+  std::function<std::optional<std::string>(std::size_t level, std::size_t parts)> level;
+  std::function<std::string(std::size_t level, std::size_t part, std::size_t parts)> part;
+};
+
+/// The manifest of the outside contract: what was asked, where the levels are and the certificate of each. A pure
+/// function of volume, request and result version: no times, no absolute urls.
+///
+/// Lengths, areas and volumes are in the units of the requested space; null where a time survey has none.
+Json manifest_document(const VolumeDescription& volume, const ReconstructOptions& options,
+                       const Reconstruction& reconstruction, const ManifestUrls& urls);
+
+}  // namespace geosis::server

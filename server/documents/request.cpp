@@ -1,0 +1,230 @@
+#include "server/documents/request.h"
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "server/documents/object_reader.h"
+
+namespace geosis::server {
+namespace {
+
+constexpr std::int64_t kMostLevels = 16;
+constexpr std::int64_t kLastNode = std::numeric_limits<std::int32_t>::max() - 1;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr const char* kAxisNames[3] = {"inline", "crossline", "sample"};
+
+// What the contract defines and this version has only the default of. One place for reading and for the canonical form.
+struct FixedField {
+  const char* name;
+  Json supported;
+};
+
+const std::vector<FixedField>& fixed_fields() {
+  static const std::vector<FixedField> fields = {
+      {"missing", {{"method", "none"}, {"kernel", "polyharmonic"}, {"steer", "auto"}, {"max_distance", nullptr}}},
+      {"grid", "given"},
+      {"velocity", nullptr},
+      {"bodies", {{"min_voxels", 0}, {"largest", nullptr}, {"seeds", Json::array()}}},
+      {"simplify", {{"strategy", "greedy"}, {"placement", "optimal"}, {"seed", 0}}},
+      {"attributes", Json::array({"reliability"})},
+      {"attribute_volume", nullptr},
+      {"preview", false},
+  };
+  return fields;
+}
+
+const std::vector<FixedField>& fixed_level_fields() {
+  static const std::vector<FixedField> fields = {
+      {"error_cap", nullptr},
+      {"drop", {{"max_voxels", 0}, {"max_error", 0}}},
+  };
+  return fields;
+}
+
+void read_fixed(ObjectReader& reader, const FixedField& field, std::optional<Error>& problem) {
+  const Json* member = reader.find(field.name);
+  if (!member || !field.supported.is_object()) {
+    reader.only(field.name, field.supported);
+    return;
+  }
+  ObjectReader inner(*member, reader.pointer_to(field.name), problem);
+  for (const auto& [name, supported] : field.supported.items()) inner.only(name.c_str(), supported);
+  inner.refuse_unknown();
+}
+
+/// The end as float32; nullopt when it is not a number or null. -0 becomes 0, so that equal ranges have one text.
+std::optional<float> range_end(const Json& value, float open_end) {
+  if (value.is_null()) return open_end;
+  if (!value.is_number()) return std::nullopt;
+  return static_cast<float>(value.get<double>()) + 0.0f;
+}
+
+IsoRange read_range(ObjectReader& request) {
+  const Json* value = request.find("range");
+  const std::string pointer = request.pointer_to("range");
+  if (!value || !value->is_array() || value->size() != 2) {
+    request.refuse(pointer, value ? *value : Json(nullptr), "[low, high], a null end being open");
+    return {};
+  }
+  const auto low = range_end((*value)[0], -kInfinity);
+  const auto high = range_end((*value)[1], kInfinity);
+  if (!low || *low == kInfinity) request.refuse(pointer + "/0", (*value)[0], "a float32 number, or null = open");
+  if (!high || *high == -kInfinity) request.refuse(pointer + "/1", (*value)[1], "a float32 number, or null = open");
+  if (!low || !high) return {};
+  if (*low > *high) request.refuse(pointer, *value, "low <= high");
+  return {*low, *high};
+}
+
+std::optional<GridBox> read_region(ObjectReader& request, std::optional<Error>& problem) {
+  const Json* value = request.find("region");
+  if (!value || value->is_null()) return std::nullopt;
+  ObjectReader region(*value, request.pointer_to("region"), problem);
+  GridBox box;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Json* ends = region.find(kAxisNames[axis]);
+    const bool is_pair = ends && ends->is_array() && ends->size() == 2;
+    const auto first = is_pair ? whole_number_of((*ends)[0], 0, kLastNode) : std::nullopt;
+    const auto last = is_pair ? whole_number_of((*ends)[1], 0, kLastNode) : std::nullopt;
+    if (!first || !last || *first >= *last) {
+      region.refuse(region.pointer_to(kAxisNames[axis]), ends ? *ends : Json(nullptr),
+                    "[first, last], two node numbers from 0, first < last");
+      return std::nullopt;
+    }
+    box.first[axis] = static_cast<std::int32_t>(*first);
+    box.last[axis] = static_cast<std::int32_t>(*last);
+  }
+  region.refuse_unknown();
+  return box;
+}
+
+double read_ratio(ObjectReader& level, double previous) {
+  const Json* ratio = level.find("ratio");
+  const double number = ratio && ratio->is_number() ? ratio->get<double>() : 0;
+  if (!(number > 0 && number <= 1)) {
+    level.refuse(level.pointer_to("ratio"), ratio ? *ratio : Json(nullptr), "a number in (0, 1]");
+  } else if (number >= previous) {
+    level.refuse(level.pointer_to("ratio"), *ratio, "less than the level before it has");
+  }
+  return number;
+}
+
+/// Levels by another measure than the ratio are in the contract, but not in this version.
+void refuse_other_measures(ObjectReader& level) {
+  for (const char* measure : {"max_error", "max_cost"}) level.only(measure, nullptr);
+}
+
+std::vector<double> read_levels(ObjectReader& request, std::vector<double> otherwise, std::optional<Error>& problem) {
+  const Json* value = request.find("levels");
+  if (!value) return otherwise;
+  const std::string pointer = request.pointer_to("levels");
+  if (!value->is_array() || value->empty() || value->size() > kMostLevels) {
+    request.refuse(pointer, *value, "an array of 1 to " + std::to_string(kMostLevels) + " levels");
+    return otherwise;
+  }
+  std::vector<double> ratios;
+  double previous = std::numeric_limits<double>::infinity();
+  for (const Json& entry : *value) {
+    ObjectReader level(entry, pointer + "/" + std::to_string(ratios.size()), problem);
+    refuse_other_measures(level);
+    for (const auto& field : fixed_level_fields()) read_fixed(level, field, problem);
+    previous = read_ratio(level, previous);
+    ratios.push_back(previous);
+    level.refuse_unknown();
+  }
+  return ratios;
+}
+
+void read_codec(ObjectReader& request, ReconstructOptions& options, std::optional<Error>& problem) {
+  const Json* value = request.find("codec");
+  if (!value) return;
+  ObjectReader codec(*value, request.pointer_to("codec"), problem);
+  const auto bits = codec.whole_number("position_bits", 7, kMaxPositionBits);
+  const auto speed = codec.whole_number("speed", 0, 10);
+  codec.only("normals", false);
+  codec.refuse_unknown();
+  if (bits) options.position_bits = static_cast<int>(*bits);
+  if (speed) options.speed = static_cast<int>(*speed);
+}
+
+Json range_end_or_null(float end) {
+  return number_or_null(static_cast<double>(end));
+}
+
+Json region_document(const GridBox& box) {
+  Json region;
+  for (int axis = 0; axis < 3; ++axis) region[kAxisNames[axis]] = {box.first[axis], box.last[axis]};
+  return region;
+}
+
+Json levels_document(const std::vector<double>& ratios) {
+  Json levels = Json::array();
+  for (const double ratio : ratios) {
+    Json level = {{"ratio", ratio}};
+    for (const auto& field : fixed_level_fields()) level[field.name] = field.supported;
+    levels.push_back(std::move(level));
+  }
+  return levels;
+}
+
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
+}  // namespace
+
+Result<ReconstructOptions> parse_request(const Json& document) {
+  std::optional<Error> problem;
+  ObjectReader request(document, "", problem);
+  ReconstructOptions options;
+  options.range = read_range(request);
+  options.mode = request.choice("mode", {"exact", "sampled"}) == 0 ? BodyMode::exact : BodyMode::sampled;
+  options.index_space = request.choice("space", {"world", "index"}) == 1;
+  options.cap = request.boolean("cap", options.cap);
+  options.region = read_region(request, problem);
+  options.ratios = read_levels(request, options.ratios, problem);
+  read_codec(request, options, problem);
+  for (const auto& field : fixed_fields()) read_fixed(request, field, problem);
+  request.refuse_unknown();
+  if (problem) return *std::move(problem);
+  return options;
+}
+
+Json request_document(const ReconstructOptions& options, GridShape shape) {
+  Json request = {
+      {"range", {range_end_or_null(options.range.low), range_end_or_null(options.range.high)}},
+      {"mode", options.mode == BodyMode::exact ? "exact" : "sampled"},
+      {"space", options.index_space ? "index" : "world"},
+      {"cap", options.cap},
+      {"region", region_document(options.region.value_or(whole(shape)))},
+      {"levels", levels_document(options.ratios)},
+      {"codec",
+       {{"position_bits", or_null(options.position_bits)}, {"normals", false}, {"speed", or_null(options.speed)}}}};
+  for (const auto& field : fixed_fields()) request[field.name] = field.supported;
+  return request;
+}
+
+Result<Json> range_from_text(std::string_view low, std::string_view high) {
+  Json range = Json::array();
+  for (const std::string_view text : {low, high}) {
+    double number = 0;
+    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (problem != std::errc{} || end != text.data() + text.size() || std::isnan(number)) {
+      return Error{ErrorCode::invalid_argument,
+                   "range end \"" + std::string(text) + "\": expected a number, inf or -inf"};
+    }
+    const double open_end =
+        range.empty() ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::infinity();
+    if (std::isinf(number) && number != open_end) {
+      return Error{ErrorCode::invalid_argument, "range end \"" + std::string(text) + "\": nothing lies beyond it"};
+    }
+    range.push_back(number_or_null(number));
+  }
+  return range;
+}
+
+}  // namespace geosis::server

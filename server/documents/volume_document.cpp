@@ -1,0 +1,62 @@
+#include "server/documents/volume_document.h"
+
+#include "server/documents/ids.h"
+#include "server/documents/import_options.h"
+
+namespace geosis::server {
+namespace {
+
+Json dims_document(GridShape shape) {
+  return {shape.inlines, shape.crosslines, shape.samples};
+}
+
+Json trace_axis_document(const Axis& axis) {
+  return {{"first", number_or_null(axis.first)},
+          {"step", number_or_null(axis.step)},
+          {"byte", axis.byte > 0 ? Json(axis.byte) : Json(nullptr)}};
+}
+
+Json axes_document(const VolumeDescription& volume) {
+  return {{"inline", trace_axis_document(volume.inline_axis)},
+          {"crossline", trace_axis_document(volume.crossline_axis)},
+          {"sample",
+           {{"first", number_or_null(volume.sample_axis.first)},
+            {"step", number_or_null(volume.sample_axis.step)},
+            {"unit", volume.sample_unit}}}};
+}
+
+Json warnings_document(const std::vector<Warning>& warnings) {
+  Json list = Json::array();
+  for (const auto& warning : warnings) list.push_back({{"code", warning.code}, {"detail", warning.detail}});
+  return list;
+}
+
+}  // namespace
+
+Json volume_document(const VolumeDescription& volume, const std::string& name) {
+  return {{"id", volume_id(volume)},
+          {"name", name},
+          {"text_header", volume.text_header},
+          {"dims", dims_document(volume.shape)},
+          {"axes", axes_document(volume)},
+          {"geometry", {{"transform", *volume.geometry.affine()}, {"unit", volume.geometry_unit}}},
+          {"value_range", {number_or_null(volume.value_range.min), number_or_null(volume.value_range.max)}},
+          {"missing", {{"samples", volume.missing_samples}, {"traces", volume.missing_traces}}},
+          {"bytes", volume.bytes},
+          {"format", volume.format},
+          {"options", import_options_document(volume.options)},
+          {"warnings", warnings_document(volume.warnings)}};
+}
+
+Json candidates_document(const std::vector<GridCandidate>& candidates) {
+  Json list = Json::array();
+  for (const auto& candidate : candidates) {
+    list.push_back({{"inline_byte", candidate.inline_byte},
+                    {"crossline_byte", candidate.crossline_byte},
+                    {"dims", dims_document(candidate.shape)},
+                    {"missing_traces", candidate.missing_traces}});
+  }
+  return list;
+}
+
+}  // namespace geosis::server

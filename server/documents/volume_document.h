@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "engine/volume/formats/import.h"
+#include "server/documents/json_text.h"
+
+namespace geosis::server {
+
+/// The volume document of the outside contract, as far as a file alone decides it: without the state, times and links
+/// of a stored volume.
+///
+/// name   what people call the volume, for example its file's name.
+Json volume_document(const VolumeDescription& volume, const std::string& name);
+
+/// The grids that a refused survey could be, as its refusal lists them.
+Json candidates_document(const std::vector<GridCandidate>& candidates);
+
+}  // namespace geosis::server

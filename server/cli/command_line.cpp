@@ -1,0 +1,61 @@
+#include <cstdio>
+#include <new>
+#include <utility>
+#include <vector>
+
+#include "server/cli/commands.h"
+
+namespace geosis::server {
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kUsage = 2;
+
+/// The message as one line: errors quote names and bytes of files, which may hold anything.
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
+  }
+  return text;
+}
+
+int failed(const char* code, const std::string& message) {
+  std::fprintf(stderr, "geosis: %s: %s\n", code, one_line(message).c_str());
+  return kFailed;
+}
+
+int run(const Command& command) {
+  try {
+    const auto done = command();
+    return done ? 0 : failed(name_of(done.error().code), done.error().message);
+  } catch (const std::bad_alloc&) {
+    return failed(name_of(ErrorCode::limit_exceeded), "out of memory");
+  }
+}
+
+}  // namespace
+
+int run_command_line(int argc, const char* const* argv) {
+  CLI::App app("Geosis: seismic volumes to reservoir bodies", "geosis");
+  app.set_version_flag("--version", "geosis " GEOSIS_VERSION);
+  app.require_subcommand(1);
+  std::vector<std::pair<CLI::App*, Command>> commands;
+  for (const auto& add : {add_reconstruct_command, add_info_command, add_synth_command}) {
+    Command command = add(app);
+    commands.emplace_back(app.get_subcommands({}).back(), std::move(command));
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& wanted) {  // --help, --version
+    return app.exit(wanted);
+  } catch (const CLI::ParseError& problem) {
+    std::fprintf(stderr, "geosis: usage: %s (geosis --help)\n", one_line(problem.what()).c_str());
+    return kUsage;
+  }
+  for (const auto& [subcommand, command] : commands) {
+    if (subcommand->parsed()) return run(command);
+  }
+  return kUsage;
+}
+
+}  // namespace geosis::server

@@ -1,0 +1,92 @@
+#include "server/cli/level_files.h"
+
+#include <regex>
+
+#include "engine/codec/obj.h"
+#include "engine/codec/ply.h"
+
+namespace geosis::server {
+namespace {
+
+std::string part_name(std::size_t level, std::size_t part, std::size_t parts) {
+  const std::string name = "lod" + std::to_string(level);
+  return parts == 1 ? name + ".drc" : name + "." + std::to_string(part) + ".drc";
+}
+
+Result<void> write_parts(OutputFolder& folder, const EncodedLevel& encoded, std::size_t level) {
+  for (std::size_t part = 0; part < encoded.parts.size(); ++part) {
+    const auto& bytes = encoded.parts[part].bytes;
+    auto written = folder.write(part_name(level, part, encoded.parts.size()), [&](std::ostream& stream) {
+      stream.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+      return Result<void>();
+    });
+    if (!written) return written;
+  }
+  return {};
+}
+
+Result<void> write_exports(OutputFolder& folder, const IndexedMesh& mesh, std::size_t level, FileFormats formats,
+                           const PositionMap& to_space) {
+  const std::string name = "lod" + std::to_string(level);
+  if (formats.ply) {
+    auto written = folder.write(name + ".ply", [&](std::ostream& stream) { return write_ply(stream, mesh, to_space); });
+    if (!written) return written;
+  }
+  if (formats.obj) {
+    return folder.write(name + ".obj", [&](std::ostream& stream) { return write_obj(stream, mesh, to_space); });
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<FileFormats> parse_file_formats(std::string_view text) {
+  FileFormats formats;
+  while (!text.empty()) {
+    const auto name = text.substr(0, text.find(','));
+    text.remove_prefix(std::min(name.size() + 1, text.size()));
+    if (name == "ply") {
+      formats.ply = true;
+    } else if (name == "obj") {
+      formats.obj = true;
+    } else if (name != "drc") {
+      return Error{ErrorCode::invalid_argument, "format \"" + std::string(name) + "\"; expected drc, ply or obj"};
+    }
+  }
+  return formats;
+}
+
+ManifestUrls file_urls() {
+  return {.level = [](std::size_t level, std::size_t parts) -> std::optional<std::string> {
+            if (parts != 1) return std::nullopt;
+            return part_name(level, 0, parts);
+          },
+          .part = part_name};
+}
+
+bool is_result_file(const std::string& name) {
+  static const std::regex pattern(R"(manifest\.json|lod\d+(\.\d+)?\.drc|lod\d+\.(ply|obj))");
+  return std::regex_match(name, pattern);
+}
+
+Result<void> write_result(OutputFolder& folder, const VolumeDescription& volume, const ReconstructOptions& options,
+                          const Reconstruction& reconstruction, FileFormats formats, Progress& progress) {
+  const PositionMap to_space =
+      options.index_space ? PositionMap() : [&](Vec3d index) { return volume.geometry.map(index); };
+  const auto& levels = reconstruction.levels;
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    if (progress.cancelled())
+      return Error{ErrorCode::cancelled, "stopped while writing level " + std::to_string(level)};
+    progress.report("write", static_cast<double>(level) / static_cast<double>(levels.size()));
+    if (auto written = write_parts(folder, levels[level].encoded, level); !written) return written;
+    auto written = write_exports(folder, levels[level].lod.mesh, level, formats, to_space);
+    if (!written) return written;
+  }
+  const std::string manifest = document_text(manifest_document(volume, options, reconstruction, file_urls()));
+  return folder.write("manifest.json", [&](std::ostream& stream) {
+    stream << manifest;
+    return Result<void>();
+  });
+}
+
+}  // namespace geosis::server

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "engine/base/result.h"
+#include "engine/codec/level_codec.h"
+
+namespace geosis {
+
+/// Everything that Draco would throw on, crash on or change silently, refused by name (see encode_level's errors).
+///
+/// cost   one pass over positions and triangles, about 1 % of encoding.
+Result<void> check_level(const IndexedMesh& mesh, const EncodeOptions& options);
+
+}  // namespace geosis

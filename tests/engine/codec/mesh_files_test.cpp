@@ -1,0 +1,110 @@
+#include <cstdint>
+#include <cstdio>
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "engine/codec/obj.h"
+#include "engine/codec/ply.h"
+#include "tests/support/lattice_meshes.h"
+
+namespace geosis {
+namespace {
+
+const IndexedMesh kMesh = test::torus({32, 32, 32}, 15, 6, 12, 8);
+
+/// Needs all digits of a double, beside an origin as large as a survey's.
+Vec3d to_world(Vec3d p) {
+  return {6'543'210.7 + p.x * 12.5 / 3, 432'100.1 - p.y / 7, p.z * 4};
+}
+
+struct MeshFile {
+  std::vector<Vec3d> positions;
+  std::vector<Triangle> triangles;
+};
+
+template <class T>
+T take(std::istream& stream) {
+  T value{};
+  stream.read(reinterpret_cast<char*>(&value), sizeof(T));
+  return value;
+}
+
+MeshFile read_ply(std::istream& stream) {
+  std::size_t vertices = 0, triangles = 0;
+  for (std::string line; std::getline(stream, line) && line != "end_header";) {
+    std::sscanf(line.c_str(), "element vertex %zu", &vertices);
+    std::sscanf(line.c_str(), "element face %zu", &triangles);
+  }
+  MeshFile file;
+  for (std::size_t v = 0; v < vertices; ++v) file.positions.push_back(take<Vec3d>(stream));
+  for (std::size_t t = 0; t < triangles; ++t) {
+    EXPECT_EQ(take<std::uint8_t>(stream), 3);
+    file.triangles.push_back(take<Triangle>(stream));
+  }
+  EXPECT_TRUE(stream);
+  EXPECT_EQ(stream.peek(), std::char_traits<char>::eof());
+  return file;
+}
+
+MeshFile read_obj(std::istream& stream) {
+  MeshFile file;
+  for (std::string line; std::getline(stream, line);) {
+    Vec3d p;
+    Triangle t;
+    if (std::sscanf(line.c_str(), "v %lf %lf %lf", &p.x, &p.y, &p.z) == 3) {
+      file.positions.push_back(p);
+    } else if (std::sscanf(line.c_str(), "f %d %d %d", &t[0], &t[1], &t[2]) == 3) {
+      file.triangles.push_back({t[0] - 1, t[1] - 1, t[2] - 1});
+    } else {
+      ADD_FAILURE() << line;
+    }
+  }
+  return file;
+}
+
+void expect_mapped_mesh(const MeshFile& file) {
+  EXPECT_EQ(file.triangles, kMesh.triangles);
+  ASSERT_EQ(file.positions.size(), kMesh.positions.size());
+  for (std::size_t v = 0; v < file.positions.size(); ++v) {
+    EXPECT_EQ(file.positions[v], to_world(to_double(kMesh.positions[v])));
+  }
+}
+
+TEST(WritePly, ReadsBackWithFullPrecision) {
+  std::stringstream stream;
+  ASSERT_TRUE(write_ply(stream, kMesh, to_world));
+  expect_mapped_mesh(read_ply(stream));
+}
+
+TEST(WriteObj, ReadsBackWithFullPrecision) {
+  std::stringstream stream;
+  ASSERT_TRUE(write_obj(stream, kMesh, to_world));
+  expect_mapped_mesh(read_obj(stream));
+}
+
+TEST(WriteObj, WithoutMapHoldsIndexCoordinates) {
+  std::stringstream stream;
+  ASSERT_TRUE(write_obj(stream, {{{1, 2.5f, 3.015625f}, {0, 0, 0}, {100'000, 0, 0}}, {{0, 1, 2}}}, {}));
+  EXPECT_EQ(stream.str(), "v 1 2.5 3.015625\nv 0 0 0\nv 1e+05 0 0\nf 1 2 3\n");
+}
+
+TEST(WritePly, FilesLargerThanTheBufferComeBackWhole) {
+  const IndexedMesh mesh = test::sheet(100, 0);
+  std::stringstream stream;
+  ASSERT_TRUE(write_ply(stream, mesh, {}));
+  EXPECT_EQ(read_ply(stream).triangles, mesh.triangles);
+}
+
+TEST(WritePly, AFullDiskIsAnError) {
+  std::stringstream stream;
+  stream.setstate(std::ios::badbit);
+  for (const auto& written : {write_ply(stream, kMesh, {}), write_obj(stream, kMesh, {})}) {
+    ASSERT_FALSE(written);
+    EXPECT_EQ(written.error().code, ErrorCode::unavailable);
+  }
+}
+
+}  // namespace
+}  // namespace geosis

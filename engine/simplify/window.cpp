@@ -1,0 +1,157 @@
+#include "engine/simplify/window.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <utility>
+
+#include "engine/simplify/edge_cost.h"
+
+namespace geosis {
+namespace {
+
+/// Share of a merged quadric that is replaced by the planes of the present triangles. Half the memory gives less error
+/// than all of it, and fewer vanishing ends of thin bodies than none.
+constexpr float kFreshShare = 0.5f;
+
+/// After a collapse only edges up to this multiple of the cheapest one around are worth queueing.
+constexpr float kQueueLimit = 2.0f;
+
+constexpr std::int64_t kTrianglesBetweenReports = 8192;
+
+using Costs = std::array<float, (kMaxDegree + kCostLanes) / kCostLanes * kCostLanes>;
+
+}  // namespace
+
+void Window::load(std::vector<WorkingVertex> vertices, std::span<const LocalTriangle> triangles, const Box& bounds) {
+  assert(vertices.size() <= kMaxVertices);
+  vertices_ = std::move(vertices);
+  bounds_ = bounds;
+  triangles_ = static_cast<std::int64_t>(triangles.size());
+  max_cost_ = 0;
+  rings_.build(vertices_.size(), triangles);
+  version_.assign(vertices_.size(), 0);
+  marks_.reset(vertices_.size());
+  queue_all_edges();
+}
+
+bool Window::reduce(std::int64_t target, Watch& watch) {
+  while (triangles_ > target) {
+    const std::int64_t before = triangles_;
+    if (!collapse_cheapest_first(target, watch)) return false;
+    if (triangles_ <= target) break;
+    // The queue ran empty. What was refused or not worth queueing gets another chance, as long as that leads anywhere.
+    queue_all_edges();
+    if (before - triangles_ <= before / 1000) break;
+  }
+  return true;
+}
+
+Neighbours Window::free_neighbours(LocalVertex u) const {
+  Neighbours result;
+  if (vertices_[u].locked || rings_.degree(u) > kMaxDegree) return result;
+  for (const LocalVertex v : neighbours_of(u, vertices_[u].on_boundary, rings_)) {
+    if (!vertices_[v].locked) result.ids[result.count++] = v;
+  }
+  return result;
+}
+
+void Window::queue_all_edges() {
+  queue_.clear();
+  Costs costs;
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    const auto u = static_cast<LocalVertex>(i);
+    Neighbours around = free_neighbours(u);
+    LocalVertex* end =
+        std::remove_if(around.ids.begin(), around.ids.begin() + around.count, [&](LocalVertex v) { return v < u; });
+    around.count = static_cast<int>(end - around.ids.begin());
+    if (around.count == 0) continue;
+    edge_costs(vertices_, u, around, costs);
+    for (int k = 0; k < around.count; ++k) push(u, around.ids[k], costs[k]);
+  }
+}
+
+void Window::queue_edges_around(LocalVertex u) {
+  const Neighbours around = free_neighbours(u);
+  if (around.count == 0) return;
+  Costs costs;
+  edge_costs(vertices_, u, around, costs);
+  const float limit = kQueueLimit * *std::min_element(costs.begin(), costs.begin() + around.count);
+  for (int k = 0; k < around.count; ++k) {
+    if (costs[k] <= limit) push(u, around.ids[k], costs[k]);
+  }
+}
+
+void Window::push(LocalVertex u, LocalVertex v, float cost) {
+  queue_.push({u, v, version_[u], version_[v]}, cost);
+}
+
+bool Window::collapse_cheapest_first(std::int64_t target, Watch& watch) {
+  std::int64_t reported = triangles_;
+  QueuedEdge edge;
+  while (triangles_ > target && queue_.pop(edge)) {
+    if (version_[edge.u] != edge.version_u || version_[edge.v] != edge.version_v) continue;
+    if (!try_collapse(edge.u, edge.v)) continue;
+    queue_edges_around(edge.u);
+    if (reported - triangles_ < kTrianglesBetweenReports) continue;
+    if (!watch.removed(reported - triangles_)) return false;
+    reported = triangles_;
+  }
+  return watch.removed(reported - triangles_);
+}
+
+/// Merges v into u, if that keeps topology and shape.
+bool Window::try_collapse(LocalVertex u, LocalVertex v) {
+  MergedStar star;
+  if (!find_merged_star(u, v, vertices_, rings_, marks_, star)) return false;
+  WorkingVertex& kept = vertices_[u];
+  const WorkingVertex& gone = vertices_[v];
+  const Vec3f edge = gone.position - kept.position;
+  const Quadric sum = kept.quadric + seen_from(gone.quadric, edge);
+  const Vec3f place = best_point(sum, edge, merge_target(kept, gone));
+  const Vec3f position = snap_to_lattice(kept.position + place, bounds_);
+  const MovedStar moved = move_star(star, u, v, position, vertices_);
+  if (!moved.sound) return false;
+
+  const bool on_boundary = kept.on_boundary || gone.on_boundary;
+  Quadric merged = seen_from(sum, kept.position - position);
+  merged.c = std::max(merged.c, 0.0f);
+  max_cost_ = std::max(max_cost_, merged.c);
+  // The planes that hold a boundary would fade away with the memory.
+  kept.quadric = on_boundary ? merged : blend(merged, moved.planes, kFreshShare);
+  kept.position = position;
+  kept.on_boundary = on_boundary;
+  commit(u, v, star);
+  return true;
+}
+
+void Window::commit(LocalVertex u, LocalVertex v, const MergedStar& star) {
+  for (int i = 0; i < star.shared; ++i) rings_.remove_triangle(star.opposite[i], u, v);
+  for (const LocalVertex w : neighbours_of(v, vertices_[v].on_boundary, rings_)) {
+    if (w != u) rings_.rename(w, v, u);
+  }
+  rings_.merge(u, v, star.triangles());
+  triangles_ -= star.shared;
+  ++version_[u];
+  ++version_[v];
+}
+
+Window::Stored Window::store(std::span<WorkingVertex> vertices, std::span<LocalTriangle> triangles,
+                             std::span<std::int32_t> place) const {
+  Stored stored;
+  for (std::size_t v = 0; v < vertices_.size(); ++v) {
+    if (!vertices_[v].locked && rings_.degree(static_cast<LocalVertex>(v)) == 0) continue;
+    place[v] = static_cast<std::int32_t>(stored.vertices);
+    vertices[stored.vertices++] = vertices_[v];
+  }
+  for (std::size_t v = 0; v < vertices_.size(); ++v) {
+    for (const auto [a, b] : rings_.of(static_cast<LocalVertex>(v))) {
+      if (v > a || v > b) continue;  // each triangle once, at its lowest vertex
+      triangles[stored.triangles++] = {static_cast<LocalVertex>(place[v]), static_cast<LocalVertex>(place[a]),
+                                       static_cast<LocalVertex>(place[b])};
+    }
+  }
+  return stored;
+}
+
+}  // namespace geosis

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/simplify/bucket_queue.h"
+#include "engine/simplify/collapse.h"
+#include "engine/simplify/rings.h"
+#include "engine/simplify/watch.h"
+#include "engine/simplify/working_mesh.h"
+
+namespace geosis {
+
+/// A piece of the mesh small enough for the cache, simplified by itself: cheapest edge first.
+///
+///   load     vertices and triangles in, one-rings built
+///   reduce   collapse edges until so many triangles are left; may be called again with a lower target
+///   store    what is left, out
+///
+/// Scratch of one thread: loading again reuses the memory.
+class Window {
+ public:
+  static constexpr std::int32_t kMaxVertices = 65'536;
+
+  /// vertices    at most kMaxVertices; all triangles of those that are not locked are given.
+  /// bounds      no vertex leaves it.
+  void load(std::vector<WorkingVertex> vertices, std::span<const LocalTriangle> triangles, const Box& bounds);
+
+  /// Collapses edges until `target` triangles are left or no edge can collapse. False if cancelled.
+  bool reduce(std::int64_t target, Watch& watch);
+
+  std::int64_t triangles() const { return triangles_; }
+  float max_cost() const { return max_cost_; }  ///< of the collapses since load
+
+  struct Stored {
+    std::size_t vertices = 0, triangles = 0;
+  };
+
+  /// Writes locked vertices and those that still have triangles, in their order, and the triangles over them.
+  ///
+  /// place    (vertices loaded) gets each written vertex's index in `vertices`.
+  /// The other spans need the room of what was loaded.
+  Stored store(std::span<WorkingVertex> vertices, std::span<LocalTriangle> triangles,
+               std::span<std::int32_t> place) const;
+
+  /// Gives the vertices' memory back for the next load.
+  std::vector<WorkingVertex> take_vertices() { return std::move(vertices_); }
+
+ private:
+  void queue_all_edges();
+  void queue_edges_around(LocalVertex u);
+  void push(LocalVertex u, LocalVertex v, float cost);
+  bool collapse_cheapest_first(std::int64_t target, Watch& watch);
+  bool try_collapse(LocalVertex u, LocalVertex v);
+  void commit(LocalVertex u, LocalVertex v, const MergedStar& star);
+  Neighbours free_neighbours(LocalVertex u) const;
+
+  std::vector<WorkingVertex> vertices_;
+  std::vector<std::uint16_t> version_;  // raised when an edge cost at the vertex is out of date
+  Rings rings_;
+  BucketQueue queue_;
+  VertexMarks marks_;
+  Box bounds_;
+  std::int64_t triangles_ = 0;
+  float max_cost_ = 0;
+};
+
+}  // namespace geosis

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+
+#include "engine/base/progress.h"
+#include "engine/base/result.h"
+#include "engine/volume/formats/byte_source.h"
+
+namespace geosis {
+
+/// Where the records of a file lie: `count` of them, `bytes` each, one after the other from offset `begin`.
+struct Records {
+  std::uint64_t begin = 0, bytes = 0, count = 0;
+};
+
+/// Some records that follow each other, in memory.
+struct RecordBatch {
+  std::uint64_t first = 0, count = 0;
+  std::span<const std::byte> bytes;
+};
+
+/// What is done with records as they pass. The spans die with the call.
+struct RecordVisitor {
+  std::function<void(const RecordBatch&)> in_order;  ///< every batch, one after the other
+  std::function<void(const RecordBatch&)> at_once;   ///< every record once, in small batches from several threads
+};
+
+/// Reads a file once from end to end: reading ahead, hashing and the visitor's work go side by side.
+///
+/// returns  SHA-256 of all bytes of the file, hexadecimal.
+/// memory   two batches of 8 MiB, or two records if they are longer.
+/// errors   cancelled, and those of reading.
+Result<std::string> stream_records(const ByteSource& source, const Records& records, const RecordVisitor& visitor,
+                                   int threads, Progress& progress);
+
+/// SHA-256 of all bytes of the file, hexadecimal. errors: cancelled, and those of reading.
+Result<std::string> digest_of(const ByteSource& source, Progress& progress);
+
+}  // namespace geosis

@@ -46,13 +46,20 @@ std::size_t bytes_of(const EncodedLevel& encoded) {
   return bytes;
 }
 
-Json distance_document(const SurfaceDistance& distance) {
-  return {{"mean_voxels", number_or_null(distance.mean_voxels)},
-          {"max_voxels", number_or_null(distance.max_voxels)},
+/// The distance is measured in voxels; it is a length of the requested space when that is the index space.
+Json distance_document(const SurfaceDistance& distance, bool index_space) {
+  const Json mean = number_or_null(distance.mean_voxels);
+  const Json max = number_or_null(distance.max_voxels);
+  return {{"mean_voxels", mean},
+          {"max_voxels", max},
+          {"mean", index_space ? mean : Json(nullptr)},
+          {"max", index_space ? max : Json(nullptr)},
           {"samples", distance.samples}};
 }
 
-Json level_document(const ReconstructedLevel& level, std::size_t number, bool measured, const ManifestUrls& urls) {
+Json level_document(const ReconstructedLevel& level, std::size_t number, const VolumeDescription& volume,
+                    const ReconstructOptions& options, const ManifestUrls& urls) {
+  const bool measured = has_measures(volume, options);
   const auto& topology = level.topology;
   const auto url = urls.level(number, level.encoded.parts.size());
   return {{"level", number},
@@ -70,7 +77,7 @@ Json level_document(const ReconstructedLevel& level, std::size_t number, bool me
           {"manifold", topology.manifold},
           {"area", measured ? number_or_null(level.measures.area) : Json(nullptr)},
           {"volume", measured ? number_or_null(level.measures.volume) : Json(nullptr)},
-          {"distance", distance_document(level.distance)},
+          {"distance", distance_document(level.distance, options.index_space)},
           {"cost", number_or_null(level.lod.cost)},
           {"volume_drift", number_or_null(level.volume_drift)},
           {"interpolated_share", 0},  // nothing is filled in, so nothing was interpolated
@@ -87,7 +94,7 @@ Json manifest_document(const VolumeDescription& volume, const ReconstructOptions
   const auto transform = output_transform(volume, options);
   Json levels = Json::array();
   for (const auto& level : reconstruction.levels) {
-    levels.push_back(level_document(level, levels.size(), has_measures(volume, options), urls));
+    levels.push_back(level_document(level, levels.size(), volume, options, urls));
   }
   return {{"id", extraction_id(volume_name, request, kResultVersion)},
           {"volume", volume_name},

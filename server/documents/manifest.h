@@ -20,7 +20,8 @@ struct ManifestUrls {
 /// The manifest of the outside contract: what was asked, where the levels are and the certificate of each. A pure
 /// function of volume, request and result version: no times, no absolute urls.
 ///
-/// Lengths, areas and volumes are in the units of the requested space; null where a time survey has none.
+/// Lengths, areas and volumes are in the units of the requested space: null for a time survey in world space, which
+/// has none; distances are measured in voxels, and in the requested space only when that is the index space.
 Json manifest_document(const VolumeDescription& volume, const ReconstructOptions& options,
                        const Reconstruction& reconstruction, const ManifestUrls& urls);
 

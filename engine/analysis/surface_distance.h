@@ -2,25 +2,46 @@
 
 #include <cstdint>
 
-#include "engine/base/vec3.h"
+#include "engine/analysis/surface_samples.h"
+#include "engine/analysis/triangle_grid.h"
 #include "engine/mesh/indexed_mesh.h"
 
 namespace geosis {
 
 struct DistanceOptions {
-  std::int64_t samples = 10'000;  ///< points on each of the two surfaces
+  std::int64_t samples = 10'000;  ///< points on each of the two surfaces, at least 1
   int threads = 1;
 };
 
-/// Two-sided distance between two surfaces, on sample points: mean and maximum of the distances from points on a to
-/// surface b and from points on b to surface a.
+/// Two-sided distance between two surfaces, on sample points: from points on a to surface b and from points on b to
+/// surface a.
 struct SurfaceDistance {
-  double mean_voxels = 0, max_voxels = 0;  ///< index units
-  std::int64_t samples = 0;                ///< points used, both ways together
+  double mean_voxels = 0;    ///< mean of the two one-sided means over points spread by area; index units
+  double max_voxels = 0;     ///< over all points
+  std::int64_t samples = 0;  ///< points used, both ways together; 0 = nothing was measured
 };
 
-/// Points are spread over each surface by area, at places that depend on the mesh alone (no random numbers), and the
-/// vertices of b come first. The same result for any number of threads.
+/// One surface, prepared once, from which distances to others are measured.
+///
+/// Up to half of the points on a surface are its vertices, evenly spaced in their order, for they reach furthest; the
+/// others are spread evenly by area, at places that depend on the mesh alone (no random numbers). The distance of each
+/// point is exact, and the result is the same for any number of threads.
+class ReferenceSurface {
+ public:
+  /// mesh   at least one triangle; kept by reference.
+  /// cost   O(triangles): a grid of cells, 20 bytes a triangle.
+  ReferenceSurface(const IndexedMesh& mesh, const DistanceOptions& options);
+
+  /// All zero when the other mesh has no triangles.
+  SurfaceDistance measure(const IndexedMesh& other) const;
+
+ private:
+  DistanceOptions options_;
+  SurfaceSamples samples_;
+  TriangleGrid grid_;
+};
+
+/// Distance between two surfaces, symmetric in a and b; all zero when one of them has no triangles.
 SurfaceDistance measure_distance(const IndexedMesh& a, const IndexedMesh& b, const DistanceOptions& options);
 
 }  // namespace geosis

@@ -5,12 +5,14 @@
 
 namespace geosis {
 
-/// Area and enclosed volume of the mesh mapped to the world. The volume is meaningful for closed meshes and positive
-/// when the mapped triangles look outwards.
+/// Area and enclosed volume of the mesh mapped to the world, in world units. The volume is meaningful for closed meshes
+/// and positive when the mapped triangles look outwards.
 struct SurfaceMeasures {
   double area = 0, volume = 0;
 };
 
+/// Sums run in double, in the order of the triangles, on positions relative to the mesh's first vertex: an origin
+/// thousands of kilometres away costs no digits.
 SurfaceMeasures measure_surface(const IndexedMesh& mesh, const GridGeometry& geometry);
 
 }  // namespace geosis

@@ -8,15 +8,18 @@ namespace geosis {
 
 /// What a mesh is, by index.
 struct TopologyReport {
-  std::int64_t vertices = 0, triangles = 0;
+  std::int64_t vertices = 0, triangles = 0;  ///< vertices that a triangle uses
   std::int64_t components = 0;
-  std::int64_t euler = 0;  ///< V - E + F
-  std::int64_t genus = 0;  ///< sum over components, each closed over its boundary loops
-  std::int64_t boundary_loops = 0;
-  bool manifold = false;  ///< every edge in one or two triangles, oriented alike; one fan at every vertex
+  std::int64_t euler = 0;           ///< V - E + F
+  std::int64_t genus = 0;           ///< sum over components, each closed over its boundary loops; 0 unless manifold
+  std::int64_t boundary_loops = 0;  ///< 0 unless manifold
+  bool manifold = false;            ///< every edge in one or two triangles, oriented alike; one fan at every vertex
+
+  bool operator==(const TopologyReport&) const = default;
 };
 
-/// cost   O(triangles log triangles), no hash map; 24 bytes a triangle.
+/// mesh   any mesh with indices in range.
+/// cost   O(triangles log valence) for a manifold, else O(triangles log triangles); no hash map; 36 bytes a triangle.
 TopologyReport report_topology(const IndexedMesh& mesh);
 
 }  // namespace geosis

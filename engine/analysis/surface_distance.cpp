@@ -1,0 +1,70 @@
+#include "engine/analysis/surface_distance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "engine/base/parallel.h"
+
+namespace geosis {
+namespace {
+
+/// Points that one task handles. Fixed, so that sums do not depend on the number of threads.
+constexpr std::size_t kChunk = 256;
+
+struct OneSided {
+  double mean = 0, max = 0;
+};
+
+struct Partial {
+  double sum = 0, max = 0;
+};
+
+/// Neighbouring points have neighbouring nearest triangles: each search starts from the answer of the last.
+Partial measure_chunk(const SurfaceSamples& samples, std::size_t first, std::size_t last, const TriangleGrid& grid) {
+  Partial partial;
+  NearestTriangle nearest;
+  for (std::size_t s = first; s < last; ++s) {
+    nearest = grid.find_nearest(samples.points[s], nearest.triangle);
+    const double distance = std::sqrt(nearest.squared_distance);
+    partial.max = std::max(partial.max, distance);
+    if (s >= samples.vertices) partial.sum += distance;
+  }
+  return partial;
+}
+
+OneSided measure_one_side(const SurfaceSamples& from, const TriangleGrid& to, int threads) {
+  const std::size_t count = from.points.size();
+  std::vector<Partial> partials((count + kChunk - 1) / kChunk);
+  parallel_for(partials.size(), threads, [&](std::size_t chunk) {
+    partials[chunk] = measure_chunk(from, chunk * kChunk, std::min(count, (chunk + 1) * kChunk), to);
+  });
+  Partial total;
+  for (const Partial& partial : partials) {
+    total.sum += partial.sum;
+    total.max = std::max(total.max, partial.max);
+  }
+  return {total.sum / static_cast<double>(count - from.vertices), total.max};
+}
+
+}  // namespace
+
+ReferenceSurface::ReferenceSurface(const IndexedMesh& mesh, const DistanceOptions& options)
+    : options_(options), samples_(sample_surface(mesh, static_cast<std::size_t>(options.samples))), grid_(mesh) {}
+
+SurfaceDistance ReferenceSurface::measure(const IndexedMesh& other) const {
+  if (other.triangles.empty()) return {};
+  const SurfaceSamples others = sample_surface(other, static_cast<std::size_t>(options_.samples));
+  const OneSided away = measure_one_side(samples_, TriangleGrid(other), options_.threads);
+  const OneSided back = measure_one_side(others, grid_, options_.threads);
+  return {.mean_voxels = (away.mean + back.mean) / 2,
+          .max_voxels = std::max(away.max, back.max),
+          .samples = static_cast<std::int64_t>(samples_.points.size() + others.points.size())};
+}
+
+SurfaceDistance measure_distance(const IndexedMesh& a, const IndexedMesh& b, const DistanceOptions& options) {
+  if (a.triangles.empty()) return {};
+  return ReferenceSurface(a, options).measure(b);
+}
+
+}  // namespace geosis

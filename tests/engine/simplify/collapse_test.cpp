@@ -1,0 +1,154 @@
+#include "engine/simplify/collapse.h"
+
+#include <limits>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace geosis {
+namespace {
+
+struct Patch {
+  std::vector<WorkingVertex> vertices;
+  Rings rings;
+  VertexMarks marks;
+};
+
+/// Boundary vertices are those named; positions do not matter here.
+Patch patch(std::size_t vertices, std::vector<LocalTriangle> triangles, std::vector<LocalVertex> boundary) {
+  Patch p{std::vector<WorkingVertex>(vertices), {}, {}};
+  p.rings.build(vertices, triangles);
+  p.marks.reset(vertices);
+  for (const LocalVertex v : boundary) p.vertices[v].on_boundary = true;
+  return p;
+}
+
+bool may_merge(Patch p, LocalVertex u, LocalVertex v) {
+  MergedStar star;
+  return find_merged_star(u, v, p.vertices, p.rings, p.marks, star);
+}
+
+//     3---4---5
+//    / . / . / .
+//   2---0---7---6      two inner vertices, 0 and 7 (dots stand for the other diagonals)
+//    . / . / . /
+//     1---9---8
+Patch two_inner_vertices() {
+  return patch(
+      10,
+      {{0, 3, 2}, {0, 4, 3}, {0, 7, 4}, {0, 9, 7}, {0, 1, 9}, {0, 2, 1}, {7, 5, 4}, {7, 6, 5}, {7, 8, 6}, {7, 9, 8}},
+      {1, 2, 3, 4, 5, 6, 8, 9});
+}
+
+TEST(MergedStar, InnerEdgeMayMerge) {
+  Patch p = two_inner_vertices();
+  MergedStar star;
+  ASSERT_TRUE(find_merged_star(0, 7, p.vertices, p.rings, p.marks, star));
+  EXPECT_EQ(star.shared, 2);
+  EXPECT_EQ(star.from_u, 4);
+  EXPECT_EQ(star.degree, 8);
+}
+
+TEST(MergedStar, BoundaryEdgeMayMerge) {
+  EXPECT_TRUE(may_merge(two_inner_vertices(), 2, 3));
+}
+
+TEST(MergedStar, InnerEdgeBetweenBoundaryVerticesMayNot) {
+  //   3---2
+  //   | / |
+  //   0---1
+  EXPECT_FALSE(may_merge(patch(4, {{0, 1, 2}, {0, 2, 3}}, {0, 1, 2, 3}), 0, 2));
+  EXPECT_TRUE(may_merge(patch(4, {{0, 1, 2}, {0, 2, 3}}, {0, 1, 2, 3}), 0, 1));
+}
+
+TEST(MergedStar, SingleTriangleStays) {
+  EXPECT_FALSE(may_merge(patch(3, {{0, 1, 2}}, {0, 1, 2}), 0, 1));
+}
+
+TEST(MergedStar, TetrahedronStays) {
+  EXPECT_FALSE(may_merge(patch(4, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, {}), 0, 1));
+}
+
+TEST(MergedStar, TwoTrianglesBackToBackStay) {
+  EXPECT_FALSE(may_merge(patch(3, {{0, 1, 2}, {0, 2, 1}}, {}), 0, 1));
+}
+
+TEST(MergedStar, ThreeEdgeHoleStays) {
+  // An annulus around the hole 0 1 2 with the outer ring 3 4 5.
+  const std::vector<LocalTriangle> annulus = {{0, 3, 4}, {0, 4, 1}, {1, 4, 5}, {1, 5, 2}, {2, 5, 3}, {2, 3, 0}};
+  EXPECT_FALSE(may_merge(patch(6, annulus, {0, 1, 2, 3, 4, 5}), 0, 1));
+}
+
+TEST(MergedStar, WaistOfThreeEdgesStays) {
+  // Two tetrahedra-like caps (apexes 3 and 4) on the triangle 0 1 2: merging 0 and 1 would leave two triangles on 2.
+  const std::vector<LocalTriangle> bipyramid = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 0, 4}, {2, 1, 4}, {0, 2, 4}};
+  EXPECT_FALSE(may_merge(patch(5, bipyramid, {}), 0, 1));
+  EXPECT_TRUE(may_merge(patch(5, bipyramid, {}), 0, 3));
+}
+
+TEST(MergedStar, VerticesOfOtherTrianglesOnlyDoNotMerge) {
+  EXPECT_FALSE(may_merge(two_inner_vertices(), 2, 6));
+}
+
+///   3---2
+///   | / |    in the plane z = 0, around the centre 4
+///   0---1
+Patch pyramid_base() {
+  Patch p = patch(5, {{4, 0, 1}, {4, 1, 2}, {4, 2, 3}, {4, 3, 0}}, {0, 1, 2, 3});
+  const Vec3f places[] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {1, 1, 0}};
+  for (int v = 0; v < 5; ++v) p.vertices[v].position = places[v];
+  return p;
+}
+
+bool sound_at(Patch p, Vec3f position) {
+  MergedStar star;
+  EXPECT_TRUE(find_merged_star(0, 4, p.vertices, p.rings, p.marks, star));
+  return move_star(star, 0, 4, position, p.vertices).sound;
+}
+
+TEST(MoveStar, AcceptsAPlaceInside) {
+  EXPECT_TRUE(sound_at(pyramid_base(), {0, 0, 0}));
+  EXPECT_TRUE(sound_at(pyramid_base(), {0.5f, 0.5f, 0.25f}));
+}
+
+TEST(MoveStar, RefusesTurningATriangleOver) {
+  EXPECT_FALSE(sound_at(pyramid_base(), {3, 1, 0}));
+}
+
+TEST(MoveStar, RefusesZeroArea) {
+  EXPECT_FALSE(sound_at(pyramid_base(), {2, 1, 0}));
+}
+
+TEST(MoveStar, RefusesThePlaceOfANeighbour) {
+  EXPECT_FALSE(sound_at(pyramid_base(), {2, 2, 0}));
+}
+
+TEST(MoveStar, GivesThePlanesOfTheMovedTriangles) {
+  Patch p = pyramid_base();
+  MergedStar star;
+  ASSERT_TRUE(find_merged_star(0, 4, p.vertices, p.rings, p.marks, star));
+  const MovedStar moved = move_star(star, 0, 4, {0, 0, 0}, p.vertices);
+  EXPECT_FLOAT_EQ(moved.planes.a22, 4);  // the area of the square, all of it flat
+  EXPECT_FLOAT_EQ(moved.planes.trace(), 4);
+}
+
+TEST(SnapToLattice, RoundsToTheNearestStepInsideTheBox) {
+  const Box box{{-1, -1, -1}, {100, 100, 100}};
+  EXPECT_EQ(snap_to_lattice({0.3f, -0.3f, 99.9999f}, box), (Vec3f{19.0f / 64, -19.0f / 64, 100}));
+  EXPECT_EQ(snap_to_lattice({-7, 250, 4}, box), (Vec3f{-1, 100, 4}));
+}
+
+TEST(VertexMarks, SurviveMoreClearsThanTheirCounterHolds) {
+  VertexMarks marks;
+  marks.reset(2);
+  for (int i = 0; i < 70'000; ++i) {
+    marks.clear();
+    ASSERT_FALSE(marks.has(0)) << i;
+    marks.set(0);
+    ASSERT_TRUE(marks.has(0));
+    ASSERT_FALSE(marks.has(1)) << i;
+  }
+}
+
+}  // namespace
+}  // namespace geosis

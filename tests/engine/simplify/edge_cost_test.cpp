@@ -1,0 +1,80 @@
+#include "engine/simplify/edge_cost.h"
+
+#include <array>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace geosis {
+namespace {
+
+WorkingVertex vertex(Vec3f position, std::vector<Vec3f> normals) {
+  WorkingVertex v;
+  v.position = position;
+  for (const Vec3f n : normals) add_plane(v.quadric, n, 1);
+  return v;
+}
+
+Vec3f best(const WorkingVertex& u, const WorkingVertex& v) {
+  const Vec3f edge = v.position - u.position;
+  return u.position + best_point(u.quadric + seen_from(v.quadric, edge), edge, merge_target(u, v));
+}
+
+TEST(BestPoint, FindsTheCornerWhereThreePlanesMeet) {
+  const auto u = vertex({10, 0, 0}, {{1, 0, 0}, {0, 1, 0}});
+  const auto v = vertex({10.5f, 1, 1}, {{0, 0, 1}});
+  const Vec3f p = best(u, v);
+  EXPECT_NEAR(p.x, 10, 0.01);
+  EXPECT_NEAR(p.y, 0, 0.01);
+  EXPECT_NEAR(p.z, 1, 0.01);
+}
+
+TEST(BestPoint, IsTheMiddleWhereAllIsFlat) {
+  const auto u = vertex({0, 0, 5}, {{0, 0, 1}});
+  const auto v = vertex({2, 4, 5}, {{0, 0, 1}});
+  EXPECT_EQ(best(u, v), (Vec3f{1, 2, 5}));
+}
+
+TEST(BestPoint, IsTheMiddleWhereNothingIsKnown) {
+  EXPECT_EQ(best(vertex({0, 0, 0}, {}), vertex({1, 2, 4}, {})), (Vec3f{0.5f, 1, 2}));
+}
+
+TEST(BestPoint, LeavesABoundaryVertexInPlace) {
+  auto u = vertex({0, 0, 5}, {{0, 0, 1}});
+  auto v = vertex({2, 4, 5}, {{0, 0, 1}, {1, 0, 0}});
+  v.on_boundary = true;
+  EXPECT_EQ(best(u, v), v.position);
+  EXPECT_EQ(best(v, u), v.position);
+}
+
+TEST(EdgeCosts, LanesGiveWhatOneEdgeGives) {
+  std::vector<WorkingVertex> vertices;
+  for (int i = 0; i < 12; ++i) {
+    const auto x = static_cast<float>(i);
+    vertices.push_back(vertex({x, x * x / 16, 3 - x}, {{1, x, 0.5f}, {x, -1, 2}}));
+    vertices.back().on_boundary = i % 3 == 0;
+  }
+  std::vector<LocalVertex> neighbours;
+  for (LocalVertex v = 1; v < 12; ++v) neighbours.push_back(v);
+  std::array<float, 16> together;
+  edge_costs(vertices, 0, neighbours, together);
+  for (std::size_t i = 0; i < neighbours.size(); ++i) {
+    std::array<float, kCostLanes> alone;
+    edge_costs(vertices, 0, std::span(neighbours).subspan(i, 1), alone);
+    EXPECT_EQ(together[i], alone[0]) << i;
+  }
+}
+
+TEST(EdgeCosts, FlatEdgesCostTheirLengthOnly) {
+  const std::vector<WorkingVertex> vertices = {vertex({0, 0, 0}, {{0, 0, 1}}), vertex({1, 0, 0}, {{0, 0, 1}}),
+                                               vertex({0, 3, 0}, {{0, 0, 1}}), vertex({0, 1, 1}, {{0, 0, 1}})};
+  const LocalVertex neighbours[] = {1, 2, 3};
+  std::array<float, kCostLanes> costs;
+  edge_costs(vertices, 0, neighbours, costs);
+  EXPECT_LT(costs[0], costs[1]);
+  EXPECT_LT(costs[1], 0.01f);
+  EXPECT_GT(costs[2], 0.1f);
+}
+
+}  // namespace
+}  // namespace geosis

@@ -21,8 +21,8 @@ void include(ValueRange& range, float value) {
 }
 
 void include(ValueRange& range, const ValueRange& other) {
-  include(range, other.min);
-  include(range, other.max);
+  range.min = other.min < range.min ? other.min : range.min;
+  range.max = other.max > range.max ? other.max : range.max;
 }
 
 // Sixteen samples in lanes that do not depend on each other: the order is fixed and the compiler may use vectors.

@@ -170,7 +170,7 @@ Fit fit(const ByteSource& source, std::uint64_t begin, std::uint64_t trailer, st
 
 Result<std::uint64_t> find_first_trace(const ByteSource& source, const HeaderView& header, SegyLayout& layout) {
   if (layout.revision >= 2) {
-    const auto offset = header.at<std::uint64_t>(3523);
+    const auto offset = header.at<std::uint64_t>(3521);
     if (offset >= kFileHeaderBytes && offset < source.size()) return offset;
   }
   const std::int64_t said = header.at<std::int16_t>(3505);
@@ -201,7 +201,7 @@ Result<std::int64_t> samples_of_first_trace(const ByteSource& source, const Segy
 }
 
 std::uint64_t trailer_bytes(const HeaderView& header, int revision) {
-  const auto stanzas = revision >= 2 ? header.at<std::int32_t>(3531) : 0;
+  const auto stanzas = revision >= 2 ? header.at<std::int32_t>(3529) : 0;
   return stanzas > 0 ? static_cast<std::uint64_t>(stanzas) * kTextBytes : 0;
 }
 
@@ -284,9 +284,8 @@ Result<SegyLayout> read_segy_layout(const ByteSource& source, const ImportOption
   layout.interval_us = words.interval_us;
   layout.length_unit = length_unit(header);
   if (layout.revision >= 2) {
-    const auto extensions = header.at<std::int32_t>(3507);
-    if (extensions > 0 && extensions <= 1024)
-      layout.header_bytes = (1 + static_cast<std::uint64_t>(extensions)) * kTraceHeaderBytes;
+    const auto extensions = header.at<std::int16_t>(3507);
+    if (extensions > 0) layout.header_bytes = (1 + static_cast<std::uint64_t>(extensions)) * kTraceHeaderBytes;
   }
 
   const auto first_trace = find_first_trace(source, header, layout);

@@ -1,5 +1,8 @@
 #include "engine/base/parallel.h"
 
+#include <algorithm>
+
+#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -15,6 +18,9 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
     for (std::size_t i = 0; i < count; ++i) task(i);
     return;
   }
+  // TBB gives no more threads than processors unless it is told to; more are asked for to test that results agree.
+  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(std::max(threads, default_threads())));
   tbb::task_arena arena(threads);
   arena.execute([&] {
     tbb::parallel_for(

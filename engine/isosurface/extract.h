@@ -23,7 +23,7 @@ enum class BodyMode {
 struct ExtractOptions {
   BodyMode mode = BodyMode::exact;
   bool cap = true;        ///< close the body on the region's faces and on cells dropped for missing samples
-  GridBox region;         ///< nodes; at least two an axis
+  GridBox region{};       ///< nodes; at least two an axis
   bool mirrored = false;  ///< the geometry mirrors: order triangles so that the mapped mesh looks outwards
   std::int64_t max_triangles = 500'000'000;
   int threads = 1;

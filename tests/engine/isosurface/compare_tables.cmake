@@ -1,0 +1,8 @@
+execute_process(COMMAND ${GENERATOR} OUTPUT_FILE ${WRITTEN} RESULT_VARIABLE status)
+if(NOT status EQUAL 0)
+  message(FATAL_ERROR "the generator found a fault in its own tables (exit ${status})")
+endif()
+execute_process(COMMAND ${CMAKE_COMMAND} -E compare_files ${WRITTEN} ${COMMITTED} RESULT_VARIABLE differs)
+if(differs)
+  message(FATAL_ERROR "mc33_tables.cpp is not what the generator writes: copy ${WRITTEN} to ${COMMITTED}")
+endif()

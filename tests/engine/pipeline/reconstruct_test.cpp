@@ -1,0 +1,222 @@
+#include "engine/pipeline/reconstruct.h"
+
+#include <atomic>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <string_view>
+
+#include <gtest/gtest.h>
+
+#include "engine/volume/brick_file.h"
+
+namespace geosis {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr double kRadius = 12;
+constexpr GridShape kShape = {40, 36, 32};
+
+/// Samples fall with the distance from the center of a ball: {f >= 0} is the ball.
+std::unique_ptr<BrickedVolume> ball() {
+  std::vector<float> samples;
+  for (int i = 0; i < kShape.inlines; ++i) {
+    for (int j = 0; j < kShape.crosslines; ++j) {
+      for (int k = 0; k < kShape.samples; ++k) {
+        samples.push_back(static_cast<float>(kRadius - norm(Vec3d{i - 19.3, j - 17.6, k - 15.2})));
+      }
+    }
+  }
+  return make_bricked_volume(kShape, samples);
+}
+
+const ReconstructOptions kBall = {.range = {0, kInfinity}, .ratios = {1, 0.25, 0.0625}};
+
+Reconstruction reconstruct_ball(const ReconstructOptions& options, const GridGeometry& geometry = AffineGeometry()) {
+  NoProgress progress;
+  auto result = reconstruct(*ball(), geometry, options, progress);
+  EXPECT_TRUE(result) << result.error().message;
+  return result ? *std::move(result) : Reconstruction{};
+}
+
+Error error_of(const ReconstructOptions& options, const GridGeometry& geometry = AffineGeometry()) {
+  NoProgress progress;
+  const auto result = reconstruct(*ball(), geometry, options, progress);
+  EXPECT_FALSE(result);
+  return result ? Error{} : result.error();
+}
+
+std::int64_t triangles_of(const EncodedLevel& level) {
+  std::int64_t triangles = 0;
+  for (const EncodedPart& part : level.parts) triangles += part.triangles;
+  return triangles;
+}
+
+constexpr double kBallVolume = 4.0 / 3 * std::numbers::pi * kRadius * kRadius * kRadius;
+
+TEST(Reconstruct, EveryLevelIsACertifiedBall) {
+  const Reconstruction result = reconstruct_ball(kBall);
+  ASSERT_EQ(result.levels.size(), 3u);
+  for (const ReconstructedLevel& level : result.levels) {
+    EXPECT_TRUE(level.topology.manifold);
+    EXPECT_EQ(level.topology.components, 1);
+    EXPECT_EQ(level.topology.euler, 2);
+    EXPECT_EQ(level.topology.boundary_loops, 0);
+    EXPECT_EQ(level.topology.triangles, static_cast<std::int64_t>(level.lod.mesh.triangles.size()));
+    EXPECT_EQ(triangles_of(level.encoded), level.topology.triangles);
+    EXPECT_NEAR(level.measures.volume, kBallVolume, 0.05 * kBallVolume);
+    EXPECT_LT(level.distance.max_voxels, 2);
+  }
+  EXPECT_GT(result.levels[0].topology.triangles, 2 * result.levels[1].topology.triangles);
+  EXPECT_GT(result.levels[1].topology.triangles, 2 * result.levels[2].topology.triangles);
+}
+
+TEST(Reconstruct, DistanceAndDriftGrowFromZeroAtLevel0) {
+  const Reconstruction result = reconstruct_ball(kBall);
+  EXPECT_EQ(result.levels[0].distance.max_voxels, 0);
+  EXPECT_EQ(result.levels[0].distance.samples, 0);
+  EXPECT_EQ(result.levels[0].volume_drift, 0);
+  EXPECT_GT(result.levels[1].distance.mean_voxels, 0);
+  EXPECT_GT(result.levels[2].distance.mean_voxels, result.levels[1].distance.mean_voxels);
+  const double volume = result.levels[0].measures.volume;
+  EXPECT_NEAR(result.levels[2].volume_drift, result.levels[2].measures.volume / volume - 1, 1e-12);
+}
+
+TEST(Reconstruct, DistanceIsToM0EvenWhenNobodyAsksForIt) {
+  ReconstructOptions options = kBall;
+  const Reconstruction all = reconstruct_ball(options);
+  options.ratios = {0.25, 0.0625};
+  const Reconstruction coarse = reconstruct_ball(options);
+  ASSERT_EQ(coarse.levels.size(), 2u);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(coarse.levels[k].encoded.parts[0].bytes, all.levels[k + 1].encoded.parts[0].bytes);
+    EXPECT_EQ(coarse.levels[k].distance.mean_voxels, all.levels[k + 1].distance.mean_voxels);
+    EXPECT_NEAR(coarse.levels[k].volume_drift, all.levels[k + 1].volume_drift, 1e-12);
+  }
+}
+
+TEST(Reconstruct, NothingInTheRangeHasNoLevels) {
+  ReconstructOptions options = kBall;
+  options.range = {1000, kInfinity};
+  EXPECT_TRUE(reconstruct_ball(options).levels.empty());
+}
+
+TEST(Reconstruct, MeasuresAreInWorldUnitsAndOutwardsAlsoWhenMirrored) {
+  const AffineGeometry right({1e6, 2e6, 0}, {25, 0, 0}, {0, 12.5, 0}, {0, 0, 4});
+  const AffineGeometry mirrored({1e6, 2e6, 0}, {0, 25, 0}, {12.5, 0, 0}, {0, 0, 4});
+  ASSERT_TRUE(mirrored.mirrored());
+  for (const AffineGeometry& geometry : {right, mirrored}) {
+    const Reconstruction result = reconstruct_ball(kBall, geometry);
+    EXPECT_NEAR(result.levels[0].measures.volume, 25 * 12.5 * 4 * kBallVolume, 0.02 * 25 * 12.5 * 4 * kBallVolume);
+  }
+}
+
+TEST(Reconstruct, IndexSpaceIgnoresTheGeometry) {
+  ReconstructOptions options = kBall;
+  options.index_space = true;
+  const AffineGeometry mirrored({1e6, 2e6, 0}, {0, 25, 0}, {12.5, 0, 0}, {0, 0, 4});
+  const Reconstruction there = reconstruct_ball(options, mirrored), here = reconstruct_ball(kBall);
+  EXPECT_EQ(there.levels[0].encoded.parts[0].bytes, here.levels[0].encoded.parts[0].bytes);
+  EXPECT_EQ(there.levels[0].measures.volume, here.levels[0].measures.volume);
+}
+
+TEST(Reconstruct, RegionCutsTheBody) {
+  ReconstructOptions options = kBall;
+  options.region = GridBox{{0, 0, 0}, {19, 35, 31}};
+  const Reconstruction result = reconstruct_ball(options);
+  EXPECT_TRUE(result.levels[0].topology.manifold);
+  EXPECT_EQ(result.levels[0].topology.euler, 2);
+  EXPECT_NEAR(result.levels[0].measures.volume, kBallVolume / 2, 0.05 * kBallVolume);
+}
+
+TEST(Reconstruct, AnyNumberOfThreadsMakesTheSameBytes) {
+  ReconstructOptions options = kBall;
+  const Reconstruction serial = reconstruct_ball(options);
+  options.threads = 4;
+  const Reconstruction parallel = reconstruct_ball(options);
+  for (std::size_t k = 0; k < serial.levels.size(); ++k) {
+    EXPECT_EQ(serial.levels[k].encoded.parts[0].bytes, parallel.levels[k].encoded.parts[0].bytes);
+    EXPECT_EQ(serial.levels[k].distance.mean_voxels, parallel.levels[k].distance.mean_voxels);
+    EXPECT_EQ(serial.levels[k].measures.area, parallel.levels[k].measures.area);
+  }
+}
+
+TEST(Reconstruct, TellsOfEachLevelCoarsestFirst) {
+  NoProgress progress;
+  std::vector<std::size_t> told;
+  StageTimings timings;
+  const auto result = reconstruct(*ball(), AffineGeometry(), kBall, progress, &timings,
+                                  [&](std::size_t level, const ReconstructedLevel& made) {
+                                    told.push_back(level);
+                                    EXPECT_GT(triangles_of(made.encoded), 0);
+                                    EXPECT_EQ(made.topology.euler, 2);
+                                  });
+  ASSERT_TRUE(result);
+  EXPECT_EQ(told, (std::vector<std::size_t>{2, 1, 0}));
+  for (const double seconds : {timings.extract, timings.simplify, timings.encode, timings.certify}) {
+    EXPECT_GT(seconds, 0);
+  }
+}
+
+TEST(Reconstruct, RefusesPositionBitsThatCannotHoldTheVolume) {
+  ReconstructOptions options = kBall;
+  for (const int bits : {11, 24}) {  // 40 samples need 12
+    options.position_bits = bits;
+    const Error error = error_of(options);
+    EXPECT_EQ(error.code, ErrorCode::invalid_argument);
+    EXPECT_EQ(error.message, "position bits " + std::to_string(bits) + "; this volume needs 12..23");
+  }
+  options.position_bits = 12;
+  EXPECT_EQ(reconstruct_ball(options).levels.size(), 3u);
+}
+
+TEST(Reconstruct, PassesOnWhatTheStagesRefuse) {
+  ReconstructOptions options = kBall;
+  options.range = {2, 1};
+  EXPECT_EQ(error_of(options).code, ErrorCode::invalid_argument);
+  options = kBall;
+  options.ratios = {1, 2};
+  EXPECT_EQ(error_of(options).code, ErrorCode::invalid_argument);
+  options = kBall;
+  options.speed = 11;
+  EXPECT_EQ(error_of(options).code, ErrorCode::invalid_argument);
+}
+
+class Bent final : public GridGeometry {
+ public:
+  Vec3d map(Vec3d p) const override { return {p.x, p.y, p.z + p.x * p.x}; }
+  const std::array<double, 16>* affine() const override { return nullptr; }
+  bool mirrored() const override { return false; }
+};
+
+TEST(Reconstruct, CurvedGeometriesWorkInIndexSpaceOnly) {
+  ReconstructOptions options = kBall;
+  EXPECT_EQ(error_of(options, Bent()).code, ErrorCode::unsupported);
+  options.index_space = true;
+  EXPECT_EQ(reconstruct_ball(options, Bent()).levels.size(), 3u);
+}
+
+/// Cancels as soon as the given stage reports.
+class CancelAt final : public Progress {
+ public:
+  explicit CancelAt(std::string_view stage) : stage_(stage) {}
+  void report(const char* stage, double) override { cancelled_ = cancelled_ || stage_ == stage; }
+  bool cancelled() const override { return cancelled_; }
+
+ private:
+  std::string_view stage_;
+  std::atomic<bool> cancelled_ = false;
+};
+
+TEST(Reconstruct, StopsAtEveryStage) {
+  for (const std::string_view stage : {"extract", "simplify", "encode", "certify"}) {
+    CancelAt progress(stage);
+    const auto result = reconstruct(*ball(), AffineGeometry(), kBall, progress);
+    ASSERT_FALSE(result) << stage;
+    EXPECT_EQ(result.error().code, ErrorCode::cancelled) << stage;
+  }
+}
+
+}  // namespace
+}  // namespace geosis

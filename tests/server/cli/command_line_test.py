@@ -1,0 +1,309 @@
+"""Runs the built binary (environment variable GEOSIS) on files it makes itself and checks what it leaves behind."""
+import hashlib
+import json
+import os
+import shutil
+import struct
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+GEOSIS = os.environ["GEOSIS"]
+BODY = ("--range", "0.55", "inf")
+
+
+def geosis(*arguments):
+    return subprocess.run([GEOSIS, *map(str, arguments)], capture_output=True, text=True, check=False)
+
+
+def files_in(folder):
+    return {path.name: path.read_bytes() for path in Path(folder).iterdir()}
+
+
+def decoded_counts(path):
+    """(vertices, triangles) of a Draco file as Debian's draco_decoder sees it."""
+    with tempfile.TemporaryDirectory() as folder:
+        mesh = Path(folder, "mesh.obj")
+        subprocess.run(["draco_decoder", "-i", path, "-o", mesh], check=True, capture_output=True)
+        lines = mesh.read_text(encoding="ascii").splitlines()
+    return sum(line.startswith("v ") for line in lines), sum(line.startswith("f ") for line in lines)
+
+
+def seismic_line(traces, samples):
+    """A 2D line as SEG-Y: ensembles numbered along the line, no inline or crossline numbers."""
+    binary = bytearray(400)
+    struct.pack_into(">h", binary, 16, 4000)
+    struct.pack_into(">h", binary, 20, samples)
+    struct.pack_into(">h", binary, 24, 5)
+    data = bytearray(b"\x40" * 3200) + binary
+    for trace in range(traces):
+        header = bytearray(240)
+        struct.pack_into(">ii", header, 0, trace + 1, trace + 1)
+        struct.pack_into(">ii", header, 20, 100 + trace, 1)
+        struct.pack_into(">ii", header, 180, 456000 + 25 * trace, 6781000)
+        struct.pack_into(">hh", header, 114, samples, 4000)
+        data += header + struct.pack(f">{samples}f", *(float(k) for k in range(samples)))
+    return bytes(data)
+
+
+class WithFolder(unittest.TestCase):
+    """A folder for each class, with a small sample survey in it."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = Path(tempfile.mkdtemp(prefix="geosis-test-"))
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.survey = cls.folder / "survey.sgy"
+        cls.expect_success(geosis("synth", cls.survey, "--dims", "48,56,64"))
+
+    @classmethod
+    def expect_success(cls, run):
+        if run.returncode != 0 or run.stderr:
+            raise AssertionError(f"exit status {run.returncode}: {run.stderr}")
+
+    def reconstruct(self, name, *arguments, survey=None):
+        """Runs reconstruct into a folder of that name; returns the folder and its manifest."""
+        out = self.folder / name
+        self.expect_success(geosis("reconstruct", survey or self.survey, "--out", out, *arguments))
+        return out, json.loads((out / "manifest.json").read_text(encoding="utf-8"))
+
+    def expect_parts(self, out, manifest):
+        """Every part is there as the manifest says, for a reader that is not ours as well."""
+        for level in manifest["levels"]:
+            for part in level["parts"]:
+                data = (out / part["url"]).read_bytes()
+                self.assertEqual(len(data), part["bytes"])
+                self.assertEqual(hashlib.sha256(data).hexdigest(), part["sha256"])
+                vertices, triangles = decoded_counts(out / part["url"])
+                self.assertEqual(triangles, part["triangles"])
+                if len(level["parts"]) == 1:
+                    self.assertEqual(vertices, level["vertices"])
+            self.assertEqual(sum(part["triangles"] for part in level["parts"]), level["triangles"])
+            self.assertEqual(sum(part["bytes"] for part in level["parts"]), level["bytes"])
+
+
+class Synth(WithFolder):
+    def test_same_seed_gives_the_same_bytes(self):
+        for name, seed in (("a", 7), ("b", 7), ("c", 8)):
+            self.expect_success(geosis("synth", self.folder / name, "--dims", "20,20,20", "--seed", seed))
+        data = files_in(self.folder)
+        self.assertEqual(data["a"], data["b"])
+        self.assertNotEqual(data["a"], data["c"])
+
+    def test_missing_none_leaves_no_trace_out(self):
+        full = self.folder / "full.sgy"
+        self.expect_success(geosis("synth", full, "--dims", "20,30,40", "--missing", "none", "--kind", "reflectors"))
+        self.assertEqual(full.stat().st_size, 3600 + 20 * 30 * (240 + 4 * 40))
+
+    def test_refuses_a_survey_of_one_line(self):
+        run = geosis("synth", self.folder / "line.sgy", "--dims", "1,30,40")
+        self.assertEqual((run.returncode, run.stderr),
+                         (1, "geosis: invalid_argument: --dims 1,30,40: at least 2 an axis\n"))
+        self.assertFalse((self.folder / "line.sgy").exists())
+
+
+class Info(WithFolder):
+    def test_prints_the_volume_document(self):
+        run = geosis("info", self.survey)
+        self.expect_success(run)
+        document = json.loads(run.stdout)
+        self.assertEqual(document["dims"], [48, 56, 64])
+        self.assertEqual(document["axes"]["inline"], {"first": 1001, "step": 1, "byte": 189})
+        self.assertEqual(document["axes"]["sample"], {"first": 1000, "step": 4, "unit": "ms"})
+        self.assertEqual(document["bytes"], self.survey.stat().st_size)
+        self.assertGreater(document["missing"]["traces"], 100)
+        self.assertEqual(document["missing"]["samples"], 64 * document["missing"]["traces"])
+
+    def test_gives_the_id_that_manifests_name(self):
+        _, manifest = self.reconstruct("named", *BODY)
+        self.assertEqual(json.loads(geosis("info", self.survey).stdout)["id"], manifest["volume"])
+
+    def test_id_is_the_same_whether_an_option_is_given_or_found(self):
+        found = json.loads(geosis("info", self.survey).stdout)["id"]
+        given = json.loads(geosis("info", self.survey, "--inline-byte", "189", "--crossline-byte", "193").stdout)["id"]
+        other = json.loads(geosis("info", self.survey, "--null-value", "0").stdout)["id"]
+        self.assertEqual(found, given)
+        self.assertNotEqual(found, other)
+
+    def test_reads_raw_samples(self):
+        raw = self.folder / "volume.raw"
+        raw.write_bytes(bytes(range(24)))
+        run = geosis("info", raw, "--format", "raw", "--dims", "2,3,4", "--dtype", "uint8", "--null-value", "5")
+        self.expect_success(run)
+        document = json.loads(run.stdout)
+        self.assertEqual(document["value_range"], [0, 23])
+        self.assertEqual(document["missing"]["samples"], 1)
+
+
+class Reconstruct(WithFolder):
+    def test_writes_five_levels_as_the_manifest_says(self):
+        out, manifest = self.reconstruct("five", *BODY)
+        self.assertEqual([level["level"] for level in manifest["levels"]], [0, 1, 2, 3, 4])
+        self.assertEqual(sorted(files_in(out)), sorted(["manifest.json", *(f"lod{k}.drc" for k in range(5))]))
+        self.expect_parts(out, manifest)
+
+    def test_every_level_keeps_the_topology_of_the_finest(self):
+        _, manifest = self.reconstruct("topology", *BODY)
+        finest = manifest["levels"][0]
+        self.assertGreater(finest["triangles"], 1000)
+        for level in manifest["levels"]:
+            self.assertTrue(level["manifold"])
+            self.assertEqual(level["boundary_loops"], 0)
+            for count in ("euler", "components", "genus"):
+                self.assertEqual(level[count], finest[count], count)
+            if level["level"] > 0:
+                self.assertLess(level["triangles"], manifest["levels"][level["level"] - 1]["triangles"])
+
+    def test_gives_the_same_bytes_on_one_and_two_threads(self):
+        one, _ = self.reconstruct("one", *BODY, "--threads", "1", "--formats", "drc,ply,obj")
+        two, _ = self.reconstruct("two", *BODY, "--threads", "2", "--formats", "drc,ply,obj")
+        self.assertEqual(files_in(one), files_in(two))
+
+    def test_request_file_means_the_same_as_flags(self):
+        request = self.folder / "request.json"
+        request.write_text('{"range": [0.55, null], "cap": false, "space": "index", '
+                           '"region": {"inline": [0, 40], "crossline": [3, 50], "sample": [0, 60]}}', encoding="utf-8")
+        _, by_file = self.reconstruct("file", "--request", request)
+        _, by_flags = self.reconstruct("flags", *BODY, "--no-cap", "--space", "index", "--region", "0:40,3:50,0:60")
+        self.assertEqual(by_file, by_flags)
+        self.assertEqual(by_file["transform"], [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1])
+
+    def test_flags_win_over_the_request_file(self):
+        request = self.folder / "other.json"
+        request.write_text('{"range": [0.2, 0.3], "mode": "sampled"}', encoding="utf-8")
+        _, manifest = self.reconstruct("win", "--request", request, "--range", "-inf", "-0.25")
+        self.assertEqual(manifest["request"]["range"], [None, -0.25])
+        self.assertEqual(manifest["request"]["mode"], "sampled")
+
+    def test_uncapped_body_has_boundary_loops(self):
+        _, manifest = self.reconstruct("open", *BODY, "--no-cap")
+        self.assertGreater(manifest["levels"][0]["boundary_loops"], 0)
+        self.assertTrue(manifest["levels"][0]["manifold"])
+
+    def test_writes_ply_and_obj_in_world_coordinates(self):
+        out, manifest = self.reconstruct("formats", *BODY, "--formats", "ply,obj")
+        for level in manifest["levels"]:
+            lines = (out / f"lod{level['level']}.obj").read_text(encoding="ascii").splitlines()
+            vertices = [line.split()[1:] for line in lines if line.startswith("v ")]
+            self.assertEqual(len(vertices), level["vertices"])
+            self.assertEqual(sum(line.startswith("f ") for line in lines), level["triangles"])
+            self.assertTrue(all(454000 < float(x) < 460000 and 6780000 < float(y) < 6784000 for x, y, _ in vertices))
+            header = (out / f"lod{level['level']}.ply").read_bytes().split(b"end_header\n")[0].decode("ascii")
+            self.assertIn(f"element vertex {level['vertices']}\n", header)
+            self.assertIn(f"element face {level['triangles']}\n", header)
+
+    def test_empty_range_leaves_the_manifest_alone(self):
+        out, manifest = self.reconstruct("empty", "--range", "1000", "inf")
+        self.assertEqual((manifest["empty"], manifest["levels"]), (True, []))
+        self.assertEqual(list(files_in(out)), ["manifest.json"])
+
+    def test_removes_the_files_of_an_earlier_result(self):
+        out, _ = self.reconstruct("again", *BODY, "--formats", "obj")
+        (out / "notes.txt").write_text("mine", encoding="utf-8")
+        self.reconstruct("again", "--range", "1000", "inf")
+        self.assertEqual(sorted(files_in(out)), ["manifest.json", "notes.txt"])
+
+    def test_failed_run_leaves_an_earlier_result_as_it_was(self):
+        out, _ = self.reconstruct("kept", *BODY)
+        before = files_in(out)
+        run = geosis("reconstruct", self.survey, "--out", out, "--range", "0", "1", "--region", "0:1,0:1,0:9999")
+        self.assertEqual(run.returncode, 1)
+        self.assertEqual(files_in(out), before)
+
+    def test_manifest_holds_neither_times_nor_folders(self):
+        out, _ = self.reconstruct("pure", *BODY)
+        text = (out / "manifest.json").read_text(encoding="utf-8")
+        self.assertNotIn(str(self.folder), text)
+        self.assertNotIn("seconds", text)
+
+
+class BigReconstruct(WithFolder):
+    def test_writes_big_levels_in_parts(self):
+        survey = self.folder / "reflectors.sgy"
+        self.expect_success(geosis("synth", survey, "--dims", "90,100,120", "--kind", "reflectors"))
+        out, manifest = self.reconstruct("parts", "--range", "0.1", "inf", survey=survey)
+        finest = manifest["levels"][0]
+        self.assertGreater(len(finest["parts"]), 1)
+        self.assertIsNone(finest["url"])
+        self.assertEqual([part["url"] for part in finest["parts"]],
+                         [f"lod0.{part}.drc" for part in range(len(finest["parts"]))])
+        self.expect_parts(out, manifest)
+
+
+class Refusals(WithFolder):
+    def expect_refusal(self, code, *arguments, says=""):
+        """The run fails with one line that holds the code, and leaves nothing behind."""
+        before = sorted(self.folder.rglob("*"))
+        run = geosis(*arguments)
+        self.assertEqual(run.returncode, 1, run.stderr)
+        self.assertEqual(run.stdout, "")
+        self.assertRegex(run.stderr, rf"\Ageosis: {code}: [^\n]+\n\Z")
+        self.assertIn(says, run.stderr)
+        self.assertEqual(sorted(self.folder.rglob("*")), before)
+
+    def expect_file_refusal(self, code, name, data, says=""):
+        path = self.folder / name
+        path.write_bytes(data)
+        self.expect_refusal(code, "reconstruct", path, "--out", self.folder / "out", *BODY, says=says)
+        self.expect_refusal(code, "info", path, says=says)
+
+    def test_missing_file(self):
+        self.expect_refusal("not_found", "reconstruct", self.folder / "none.sgy", *BODY, "--out", self.folder / "out",
+                            says="none.sgy")
+
+    def test_seismic_line(self):
+        self.expect_file_refusal("unsupported", "line.sgy", seismic_line(60, 50))
+
+    def test_survey_cut_short(self):
+        self.expect_file_refusal("malformed_input", "short.sgy", self.survey.read_bytes()[:-100])
+
+    def test_file_that_is_no_volume(self):
+        for name, data in (("empty", b""), ("text", b"hello\n" * 1000), ("zeros", bytes(10000))):
+            path = self.folder / name
+            path.write_bytes(data)
+            run = geosis("info", path)
+            self.assertEqual(run.returncode, 1, name)
+            self.assertRegex(run.stderr, r"\Ageosis: (malformed_input|unsupported|invalid_argument): [^\n]+\n\Z")
+
+    def test_ranges_that_make_no_sense(self):
+        for low, high in (("2", "1"), ("nan", "1"), ("0", "NaN"), ("a", "1"), ("inf", "inf"), ("0", "-inf"), ("", "1")):
+            self.expect_refusal("invalid_argument", "reconstruct", self.survey, "--out", self.folder / "out",
+                                "--range", low, high, says="range")
+
+    def test_no_range(self):
+        self.expect_refusal("invalid_argument", "reconstruct", self.survey, "--out", self.folder / "out", says="/range")
+
+    def test_region_outside_the_volume(self):
+        for region in ("0:48,0:55,0:63", "5:5,0:1,0:1", "0:1,0:1", "a"):
+            self.expect_refusal("invalid_argument", "reconstruct", self.survey, *BODY, "--region", region,
+                                "--out", self.folder / "out", says="region")
+
+    def test_request_with_an_unknown_field(self):
+        request = self.folder / "request.json"
+        request.write_text('{"range": [0, 1], "levels": [{"ratio": 1, "rato": 1}]}', encoding="utf-8")
+        self.expect_refusal("invalid_argument", "reconstruct", self.survey, "--request", request,
+                            "--out", self.folder / "out", says="/levels/0/rato")
+
+    def test_folder_that_cannot_be_written(self):
+        for out in (self.survey / "out", Path("/proc/geosis")):
+            self.expect_refusal("unavailable", "reconstruct", self.survey, *BODY, "--out", out, says=str(out))
+
+    def test_synth_into_a_folder_that_is_not_there(self):
+        self.expect_refusal("(unavailable|not_found)", "synth", self.folder / "none" / "out.sgy")
+
+    def test_unknown_format(self):
+        self.expect_refusal("invalid_argument", "reconstruct", self.survey, *BODY, "--formats", "stl",
+                            "--out", self.folder / "out", says="stl")
+
+    def test_command_lines_that_make_no_sense(self):
+        for arguments in ((), ("paint",), ("reconstruct",), ("reconstruct", self.survey, "--range", "1"),
+                          ("info", self.survey, "--colour", "1"), ("synth", "x.sgy", "--kind", "reef"),
+                          ("reconstruct", self.survey, *BODY, "--threads", "0")):
+            run = geosis(*arguments)
+            self.assertEqual(run.returncode, 2, arguments)
+            self.assertRegex(run.stderr, r"\Ageosis: usage: [^\n]+\n\Z")
+
+
+if __name__ == "__main__":
+    unittest.main()

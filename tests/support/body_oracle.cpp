@@ -36,12 +36,12 @@ class Domain {
   }
 
   GridShape cells() const { return cells_; }
-  bool has(GridIndex cell) const { return in_grid(cell) && present_[index(cell)] != 0; }
-
- private:
   bool in_grid(GridIndex c) const {
     return c.i >= 0 && c.j >= 0 && c.k >= 0 && c.i < cells_.inlines && c.j < cells_.crosslines && c.k < cells_.samples;
   }
+  bool has(GridIndex cell) const { return in_grid(cell) && present_[index(cell)] != 0; }
+
+ private:
   std::size_t index(GridIndex c) const {
     return (static_cast<std::size_t>(c.i) * cells_.crosslines + c.j) * cells_.samples + c.k;
   }
@@ -203,7 +203,7 @@ class BandComponents {
     for (auto& slab : slabs_) slab.resize(static_cast<std::size_t>(cells.crosslines) * cells.samples);
   }
 
-  // Cells come in ascending order, all of them; band_of_edge is -1 everywhere in cells outside the domain.
+  // Cells come in ascending order, all of them.
   void add(GridIndex cell, const std::array<std::int8_t, 12>& band_of_edge, int bands) {
     const std::int32_t first = next_;
     for (; next_ < first + bands; ++next_) components_.add();
@@ -212,6 +212,7 @@ class BandComponents {
     for (int axis = 0; axis < 3; ++axis)
       if (cell[axis] > 0) join(edges, neighbour_before(cell, axis), axis);
   }
+  void add_dropped(GridIndex cell) { at(cell).fill(-1); }
   std::int64_t count() const { return components_.count(); }
 
  private:
@@ -240,47 +241,67 @@ class BandComponents {
   std::int32_t next_ = 0;
 };
 
-// The closed rest of space: dropped cells, what lies beyond the grid, and the two sets outside the range. Each
-// component but the one beyond contains a node, and pieces that touch share one.
+// The closed rest of space: dropped cells, what lies beyond the grid, and the two sets outside the range. Each piece of
+// such a set contains a node outside the range. Dropped cells that share only a node of the body do not touch here: the
+// surface has a vertex for each (see voids_apart).
 class RestComponents {
  public:
   explicit RestComponents(GridShape nodes)
-      : nodes_(nodes), components_(nodes.count() + 1), is_rest_(nodes.count() + 1) {
+      : nodes_(nodes), components_(2 * nodes.count() + 1), is_rest_(static_cast<std::size_t>(2 * nodes.count() + 1)) {
     is_rest_.back() = true;
-    for_each_node(nodes, [&](GridIndex n) {
-      for (int axis = 0; axis < 3; ++axis)
-        if (n[axis] == 0 || n[axis] == nodes[axis] - 1) unite(index(n), beyond());
-    });
   }
 
-  void add(GridIndex cell, const std::array<std::int8_t, 8>& rest_of_corner) {
+  void add_cell(GridIndex cell, const std::array<std::int8_t, 8>& rest_of_corner) {
     for (int c = 0; c < 8; ++c) {
       if (rest_of_corner[c] < 0) continue;
       int first = 0;
       while (rest_of_corner[first] != rest_of_corner[c]) ++first;
-      unite(index(cell + unit_corner(c)), index(cell + unit_corner(first)));
+      unite(node(cell + unit_corner(c)), node(cell + unit_corner(first)));
     }
+    for (int c = 0; c < 8; ++c)
+      if (rest_of_corner[c] >= 0 && on_border(cell + unit_corner(c))) unite(node(cell + unit_corner(c)), beyond());
   }
+
+  template <class IsInside>
+  void add_dropped(const Domain& domain, GridIndex cell, IsInside&& is_inside) {
+    for (int c = 0; c < 8; ++c) {
+      const GridIndex corner = cell + unit_corner(c);
+      if (!is_inside(corner)) unite(dropped(cell), node(corner));
+      if (on_border(corner)) unite(dropped(cell), beyond());
+    }
+    for_each_node({3, 3, 3}, [&](GridIndex step) {
+      const GridIndex other = cell + step - GridIndex{1, 1, 1};
+      const int axes = (step.i != 1) + (step.j != 1) + (step.k != 1);
+      if (axes <= 2 && domain.in_grid(other) && !domain.has(other)) unite(dropped(cell), dropped(other));
+    });
+  }
+
   std::int64_t count() const {
-    std::int64_t inside = 0;
-    for (const bool rest : is_rest_) inside += !rest;
-    return components_.count() - inside;  // nodes that are in the body are sets of their own
+    std::int64_t unused = 0;
+    for (const bool rest : is_rest_) unused += !rest;
+    return components_.count() - unused;
   }
 
  private:
-  std::int32_t beyond() const { return static_cast<std::int32_t>(nodes_.count()); }
-  std::int32_t index(GridIndex n) const { return (n.i * nodes_.crosslines + n.j) * nodes_.samples + n.k; }
+  std::int32_t node(GridIndex n) const { return (n.i * nodes_.crosslines + n.j) * nodes_.samples + n.k; }
+  std::int32_t dropped(GridIndex cell) const { return static_cast<std::int32_t>(nodes_.count()) + node(cell); }
+  std::int32_t beyond() const { return static_cast<std::int32_t>(2 * nodes_.count()); }
+  bool on_border(GridIndex n) const {
+    bool border = false;
+    for (int axis = 0; axis < 3; ++axis) border = border || n[axis] == 0 || n[axis] == nodes_[axis] - 1;
+    return border;
+  }
   void unite(std::int32_t a, std::int32_t b) {
     is_rest_[a] = is_rest_[b] = true;
     components_.unite(a, b);
   }
 
   GridShape nodes_;
-  UnionFind components_;
+  UnionFind components_;  // nodes, cells (numbered by their first node), and what lies beyond
   std::vector<bool> is_rest_;
 };
 
-// Topology of a cell whose corners lie all on one side, or of a dropped one.
+// Topology of a cell whose corners lie all on one side.
 CellTopology uniform_cell(bool has_body) {
   CellTopology topology;
   topology.band_of_edge.fill(has_body ? 0 : -1);
@@ -289,8 +310,7 @@ CellTopology uniform_cell(bool has_body) {
   return topology;
 }
 
-CellTopology topology_of(const ScalarField& field, const Domain& domain, const Classifier& values, GridIndex cell) {
-  if (!domain.has(cell)) return uniform_cell(false);
+CellTopology topology_of(const ScalarField& field, const Classifier& values, GridIndex cell) {
   const auto corners = corners_of(field, values, Stratum{cell, 7});
   for (const CornerValue& corner : corners)
     if (corner.side != corners[0].side) return cell_topology(corners);
@@ -300,12 +320,33 @@ CellTopology topology_of(const ScalarField& field, const Domain& domain, const C
 std::int64_t surface_components(const ScalarField& field, const Domain& domain, const Classifier& values) {
   BandComponents body(domain.cells());
   RestComponents rest(field.shape);
+  const auto is_inside = [&](GridIndex n) { return values.side(field.at(n)) == Side::inside; };
   for_each_node(domain.cells(), [&](GridIndex cell) {
-    const CellTopology topology = topology_of(field, domain, values, cell);
-    body.add(cell, topology.band_of_edge, topology.bands);
-    rest.add(cell, topology.rest_of_corner);
+    if (domain.has(cell)) {
+      const CellTopology topology = topology_of(field, values, cell);
+      body.add(cell, topology.band_of_edge, topology.bands);
+      rest.add_cell(cell, topology.rest_of_corner);
+    } else {
+      body.add_dropped(cell);
+      rest.add_dropped(domain, cell, is_inside);
+    }
   });
   return body.count() + rest.count() - 1;
+}
+
+// Around a node of the body on the domain's border the body is a cone over some region R of a small sphere. The
+// 3-manifold has one disc there if R is a disc; but if R has b > 1 rims (dropped cells that meet in the node alone),
+// its border would be a tube of no width, for which the surface has b discs. Returns the sum of b - 1 over the pieces
+// of R.
+int voids_apart(const Domain& domain, GridIndex node) {
+  int euler = 0;
+  for (int axes = 1; axes < 8; ++axes)
+    for (int side = 0; side < 8; ++side) {
+      if ((side & axes) != side) continue;  // `side` picks the stratum's direction along each of its axes
+      const Stratum stratum{node - unit_corner(side), axes};
+      if (is_interior(domain, stratum)) euler -= stratum.sign();
+    }
+  return pieces_around(domain, {node, 0}) - euler;
 }
 
 // The sampled mode's g has one level, zero: inside is above it.
@@ -339,12 +380,16 @@ SurfaceTopology level_set(const ScalarField& field, const Domain& domain, const 
 SurfaceTopology expected_surface(const ScalarField& field, IsoRange range, BodyMode mode) {
   const Domain domain(field);
   const Classifier values(range, mode);
-  std::int64_t open_body = 0;
+  std::int64_t open_body = 0, tubes = 0;
   SurfaceTopology surface;
   surface.decided = for_each_euler(field, domain, values, [&](const Stratum& stratum, int body) {
-    if (body != 0 && is_interior(domain, stratum)) open_body += body;
+    if (body == 0) return;
+    if (is_interior(domain, stratum))
+      open_body += body;
+    else if (stratum.dimension() == 0)
+      tubes += voids_apart(domain, stratum.first);
   });
-  surface.euler = -2 * open_body;
+  surface.euler = 2 * (tubes - open_body);
   surface.components = surface_components(field, domain, values);
   return surface;
 }

@@ -19,7 +19,8 @@ struct SurfaceTopology {
 /// Topology of the closed surface of {low <= f <= high}, capped on the domain's border, split where the body only
 /// touches itself. Knows nothing of meshes or case tables.
 ///
-/// The open body `int` is a 3-manifold and its surface the boundary of that manifold, so
+/// The open body `int` is a 3-manifold and its surface the boundary of that manifold (but voids that meet in one node
+/// of the body stay apart: no surface has a tube without width), so
 ///   Euler characteristic of the surface = -2 chi_c(int), chi_c counted with compact supports;
 ///   components of the surface = components of int + components of the closed rest of space - 1.
 /// chi_c adds up over open nodes, edges, faces and cells off the domain's border; in each it is chi_c of the whole

@@ -153,7 +153,7 @@ TEST(ExpectedSurface, EqualsBruteForceInRandomCellsOfABand) {
 }
 
 TEST(ExpectedSurface, EqualsBruteForceInRandomFields) {
-  expect_brute_force_agrees({{3, 3, 4}, BodyMode::exact, false, 0, 30, 96, 0});
+  expect_brute_force_agrees({{3, 3, 4}, BodyMode::exact, false, 0, 30, 96, 1});
   expect_brute_force_agrees({{3, 3, 4}, BodyMode::exact, true, 0, 30, 96, 1});
 }
 
@@ -183,6 +183,27 @@ TEST(ExpectedSurface, OneOpenEndMakesBothModesEqual) {
       ASSERT_EQ(expected_surface(field, range, BodyMode::sampled), expected_surface(field, range, BodyMode::exact))
           << "trial " << trial;
   }
+}
+
+TEST(ExpectedSurface, RangeWithoutWidthEqualsANarrowOne) {
+  Random random(test_seed(6));
+  int compared = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    const ScalarField field = integer_noise({4, 4, 4}, random, -5, 5);
+    const SurfaceTopology level = expected_surface(field, {1, 1}, BodyMode::exact);
+    if (!level.decided) continue;
+    ++compared;
+    ASSERT_EQ(level, expected_surface(field, {1 - 1e-5f, 1 + 1e-5f}, BodyMode::exact)) << "trial " << trial;
+  }
+  EXPECT_GT(compared, 30);
+}
+
+TEST(ExpectedSurface, CellsDroppedAtOppositeSidesOfANodeAreTwoCavities) {
+  ScalarField field({9, 9, 9}, 1.0f);
+  field.at({3, 3, 3}) = field.at({5, 5, 5}) = std::nanf("");
+  EXPECT_EQ(expected_surface(field, {0, kInf}, BodyMode::exact), closed(6, 3));
+  field.at({4, 4, 4}) = -1;
+  EXPECT_EQ(expected_surface(field, {0, kInf}, BodyMode::exact), closed(4, 2));
 }
 
 TEST(ExpectedOpenSurface, BallInsideIsClosedAndCutByTheBorderIsADisc) {

@@ -39,6 +39,11 @@ struct Change {
   int corner;  // of the square; unused by join and part
 };
 
+// Leaving comes before entering, so that no corner is ever on both sides of the range.
+bool comes_before(const Change& a, const Change& b) {
+  return a.t < b.t || (a.t == b.t && a.kind == Change::leave && b.kind != Change::leave);
+}
+
 struct Piece {
   bool is_slice;
   std::array<SquarePattern, kOutsides> outside;
@@ -76,7 +81,7 @@ std::vector<Change> corner_changes(const CellCorners& cell, int outside) {
     const Upright e = upright(cell, outside, c);
     changes.push_back({e.bottom / (e.bottom - e.top), starts_in ? Change::leave : Change::enter, outside, c});
   }
-  std::sort(changes.begin(), changes.end(), [](const Change& a, const Change& b) { return a.t < b.t; });
+  std::sort(changes.begin(), changes.end(), comes_before);
   return changes;
 }
 
@@ -122,14 +127,12 @@ std::vector<Change> changes_of(const CellCorners& cell, int outside, const Squar
   return all;
 }
 
-// Leaving comes before entering, so that no corner is ever on both sides of the range.
 std::vector<Change> merged(const std::vector<Change>& a, const std::vector<Change>& b) {
   std::vector<Change> all;
   std::size_t i = 0, j = 0;
   while (i < a.size() || j < b.size()) {
-    const bool first =
-        j == b.size() || (i < a.size() && (a[i].t < b[j].t || (a[i].t == b[j].t && a[i].kind == Change::leave)));
-    all.push_back(first ? a[i++] : b[j++]);
+    const bool take_a = j == b.size() || (i < a.size() && !comes_before(b[j], a[i]));
+    all.push_back(take_a ? a[i++] : b[j++]);
   }
   return all;
 }

@@ -124,7 +124,8 @@ MeshCensus census(const IndexedMesh& mesh) {
   census.bad_indices = static_cast<std::int64_t>(mesh.triangles.size() - triangles.size());
   count_edges(sides, census);
   count_vertices(triangles, sides, mesh.positions.size(), census);
-  for (const Triangle& t : triangles) census.volume += wedge(mesh, t) / 6;
+  for (const Triangle& t : triangles) census.volume += wedge(mesh, t);
+  census.volume /= 6;  // once: the sum over a lattice is exact
   const std::vector<std::int32_t> order = vertices_by_position(mesh);
   for (std::size_t v = 1; v < order.size(); ++v)
     census.repeated_positions += mesh.positions[order[v]] == mesh.positions[order[v - 1]];

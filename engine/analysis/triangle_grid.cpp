@@ -10,25 +10,31 @@
 namespace geosis {
 namespace {
 
+/// Cells that cost nothing beside thousands of searches, however few the triangles are: coarse levels have triangles of
+/// very different sizes.
+constexpr double kFreeCells = 2'000;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Vec3d lower(Vec3d a, Vec3d b) {
+template <class T>
+Vec3<T> lower(Vec3<T> a, Vec3<T> b) {
   return {std::min(a.x, b.x), std::min(a.y, b.y), std::min(a.z, b.z)};
 }
 
-Vec3d upper(Vec3d a, Vec3d b) {
+template <class T>
+Vec3<T> upper(Vec3<T> a, Vec3<T> b) {
   return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
 
 struct Corners {
-  Vec3d a, b, c;
-  Vec3d low() const { return lower(a, lower(b, c)); }
-  Vec3d high() const { return upper(a, upper(b, c)); }
+  Vec3f a, b, c;
+
+  Vec3d low() const { return to_double(lower(a, lower(b, c))); }
+  Vec3d high() const { return to_double(upper(a, upper(b, c))); }
+  Vec3d normal() const { return cross(to_double(b) - to_double(a), to_double(c) - to_double(a)); }
 };
 
 Corners corners_of(const IndexedMesh& mesh, const Triangle& triangle) {
-  return {to_double(mesh.positions[triangle[0]]), to_double(mesh.positions[triangle[1]]),
-          to_double(mesh.positions[triangle[2]])};
+  return {mesh.positions[triangle[0]], mesh.positions[triangle[1]], mesh.positions[triangle[2]]};
 }
 
 int largest_axis(Vec3d v) {
@@ -39,8 +45,7 @@ int largest_axis(Vec3d v) {
 double mean_area(const IndexedMesh& mesh) {
   double twice_area = 0;
   for (const Triangle& triangle : mesh.triangles) {
-    const auto [a, b, c] = corners_of(mesh, triangle);
-    twice_area += norm(cross(b - a, c - a));
+    twice_area += norm(corners_of(mesh, triangle).normal());
   }
   return twice_area / 2 / static_cast<double>(mesh.triangles.size());
 }
@@ -65,8 +70,8 @@ void TriangleGrid::choose_cell_size() {
   const Vec3d size = high_ - low_;
   cell_size_ = std::max(2 * std::sqrt(mean_area(mesh_)), 1e-3);
   const auto cells_along = [&](int axis) { return std::floor(size[axis] / cell_size_) + 1; };
-  while (cells_along(0) * cells_along(1) * cells_along(2) > 2 * triangles + 64) cell_size_ *= 1.25;
-  const double limit = std::min(16 * triangles + 64, 4e9);  // first_ holds 32-bit numbers
+  while (cells_along(0) * cells_along(1) * cells_along(2) > 2 * triangles + kFreeCells) cell_size_ *= 1.25;
+  const double limit = std::min(16 * (triangles + kFreeCells), 4e9);  // first_ holds 32-bit numbers
   for (;;) {
     cells_per_unit_ = 1 / cell_size_;
     for (int axis = 0; axis < 3; ++axis) shape_[axis] = static_cast<std::int32_t>(cells_along(axis));
@@ -79,8 +84,8 @@ void TriangleGrid::choose_cell_size() {
 /// is a function of the two other coordinates with slopes of at most 1.
 class TriangleGrid::PlaneColumns {
  public:
-  PlaneColumns(const Corners& corners, const TriangleGrid& grid) : grid_(grid), on_plane_(corners.a) {
-    const Vec3d normal = cross(corners.b - corners.a, corners.c - corners.a);
+  PlaneColumns(const Corners& corners, const TriangleGrid& grid) : grid_(grid), on_plane_(to_double(corners.a)) {
+    const Vec3d normal = corners.normal();
     depth = largest_axis(normal);
     if (normal[depth] == 0) {  // no plane: every depth is possible
       margin_ = kInfinity;
@@ -193,9 +198,10 @@ double TriangleGrid::distance_to_shell(Vec3d point, Cell center, std::int32_t ra
 /// The bounding box settles most candidates, for less than the exact distance costs.
 void TriangleGrid::consider(Vec3d point, std::int32_t triangle, NearestTriangle& nearest) const {
   const Corners corners = corners_of(mesh_, mesh_.triangles[triangle]);
-  const Vec3d outside = upper(upper(corners.low() - point, point - corners.high()), {0, 0, 0});
+  const Vec3d outside = upper(upper(corners.low() - point, point - corners.high()), Vec3d{0, 0, 0});
   if (dot(outside, outside) >= nearest.squared_distance) return;
-  const double squared_distance = squared_distance_to_triangle(point, corners.a, corners.b, corners.c);
+  const double squared_distance =
+      squared_distance_to_triangle(point, to_double(corners.a), to_double(corners.b), to_double(corners.c));
   if (squared_distance < nearest.squared_distance) nearest = {squared_distance, triangle};
 }
 

@@ -17,7 +17,7 @@ struct NearestTriangle {
 /// Triangles sorted into a uniform grid of cubic cells, to find the one nearest to a point. Keeps a reference to the
 /// mesh, which must have triangles and outlive it.
 ///
-/// cost   building O(triangles); cells are a few triangles wide, at most about two cells a triangle.
+/// cost   building O(triangles); cells are a few triangles wide, at most about two cells a triangle and 2,000.
 class TriangleGrid {
  public:
   explicit TriangleGrid(const IndexedMesh& mesh);

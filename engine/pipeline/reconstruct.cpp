@@ -121,7 +121,7 @@ Result<std::vector<IndexedMesh>> encode_levels(std::vector<ReconstructedLevel>& 
   return decoded;
 }
 
-/// Distance and volume drift of every level; none for a level that is M0 itself.
+/// Distance and volume drift of every level: none for M0 itself, the same for levels that stopped at the same floor.
 Result<void> compare_with_m0(std::vector<ReconstructedLevel>& levels, const std::vector<IndexedMesh>& decoded,
                              const IndexedMesh& m0, const Run& run) {
   const StageTimer timer(run.timings.certify);
@@ -129,14 +129,18 @@ Result<void> compare_with_m0(std::vector<ReconstructedLevel>& levels, const std:
   std::optional<ReferenceSurface> reference;
   for (std::size_t k = levels.size(); k-- > 0;) {
     if (run.progress.cancelled()) return kCancelled;
+    run.progress.report("certify", 1 - static_cast<double>(k + 1) / static_cast<double>(levels.size()));
     ReconstructedLevel& level = levels[k];
-    if (!same_mesh(level.lod.mesh, m0)) {
-      if (!reference) reference.emplace(m0, DistanceOptions{.threads = run.options.threads});
-      level.distance = reference->measure(decoded[k]);
-      if (m0_volume != 0) level.volume_drift = (level.measures.volume - m0_volume) / m0_volume;
+    if (same_mesh(level.lod.mesh, m0)) continue;
+    if (m0_volume != 0) level.volume_drift = (level.measures.volume - m0_volume) / m0_volume;
+    if (k + 1 < levels.size() && same_mesh(level.lod.mesh, levels[k + 1].lod.mesh)) {
+      level.distance = levels[k + 1].distance;
+      continue;
     }
-    run.progress.report("certify", 1 - static_cast<double>(k) / static_cast<double>(levels.size()));
+    if (!reference) reference.emplace(m0, DistanceOptions{.threads = run.options.threads});
+    level.distance = reference->measure(decoded[k]);
   }
+  run.progress.report("certify", 1);
   return {};
 }
 

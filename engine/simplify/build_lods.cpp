@@ -24,6 +24,7 @@ constexpr double kKeepInPass = 0.4;            // share of the triangles that a 
 constexpr double kKeepInLastPass = 0.6;        // a gentle one: what stays locked in it is then not much denser
 constexpr double kFloorTolerance = 1.005;      // a level within this of what was asked has not stopped early
 constexpr double kCloseEnough = 1.001;         // not worth another pass
+constexpr double kLeastProgress = 0.005;       // share of the triangles; a last pass that removes less is at the floor
 constexpr int kMostPasses = 12;                // a level
 
 Error invalid(std::string message) {
@@ -68,6 +69,10 @@ Result<WorkingMesh> check_and_load(const IndexedMesh& m0) {
   return make_working_mesh(m0, *table);
 }
 
+bool is_floor(std::int64_t triangles, std::int64_t target) {
+  return triangles > target + 1 && static_cast<double>(triangles) > kFloorTolerance * static_cast<double>(target);
+}
+
 /// Takes the mesh down from level to level: in many windows while it is large, then in one.
 class Reducer {
  public:
@@ -80,9 +85,14 @@ class Reducer {
 
   /// Removes triangles until `target` are left, or as many as can go. False if cancelled.
   bool reduce(std::int64_t target) {
+    if (at_floor_) return true;
     if (!whole_ && !reduce_by_passes(target)) return false;
-    return !whole_ || whole_->reduce(target, watch_);
+    if (whole_ && !whole_->reduce(target, watch_)) return false;
+    at_floor_ = is_floor(triangles(), target);
+    return true;
   }
+
+  bool at_floor() const { return at_floor_; }  ///< fewer triangles than now were asked for and could not be had
 
   double max_cost() const { return whole_ ? std::max(mesh_.max_cost, whole_->max_cost()) : mesh_.max_cost; }
 
@@ -113,7 +123,8 @@ class Reducer {
       const PassOptions pass = plan_pass(target, i == 0, stuck);
       if (!run_pass(mesh_, pass, watch_)) return false;
       ++passes_;
-      const bool small_step = before - triangles() < before / 1000;
+      const auto removed = static_cast<double>(before - triangles());
+      const bool small_step = removed < kLeastProgress * static_cast<double>(before);
       if (small_step && pass.last) return true;
       stuck = stuck || small_step;
     }
@@ -149,15 +160,12 @@ class Reducer {
   const int threads_;
   Watch& watch_;
   std::uint32_t passes_ = 0;
+  bool at_floor_ = false;
   std::unique_ptr<Window> whole_;  // holds the mesh from the moment it fits
 };
 
 std::int64_t triangles_for(double ratio, std::size_t triangles) {
   return static_cast<std::int64_t>(ratio * static_cast<double>(triangles) + 0.5);
-}
-
-bool is_floor(std::int64_t triangles, std::int64_t target) {
-  return triangles > target + 1 && static_cast<double>(triangles) > kFloorTolerance * static_cast<double>(target);
 }
 
 }  // namespace
@@ -183,7 +191,7 @@ Result<LodHierarchy> build_lods_in_windows(IndexedMesh m0, const BuildLodsOption
     if (!reducer.reduce(target)) return Error{ErrorCode::cancelled, "levels of detail: cancelled"};
     level.mesh = reducer.snapshot();
     level.cost = reducer.max_cost();
-    if (is_floor(reducer.triangles(), target)) level.stopped_by = StoppedBy::floor;
+    if (reducer.at_floor()) level.stopped_by = StoppedBy::floor;
   }
   return hierarchy;
 }

@@ -28,20 +28,20 @@ enum class ZeroTraces { keep, missing };
 struct ImportOptions {
   FileFormat format = FileFormat::automatic;
   ByteOrder byte_order = ByteOrder::automatic;  ///< raw: automatic = little
-  std::optional<double> null_value;             ///< samples of this value are missing
+  std::optional<double> null_value{};           ///< samples of this value are missing
 
   // raw
-  std::optional<GridShape> dims;
+  std::optional<GridShape> dims{};
   SampleType dtype = SampleType::float32;
   RawOrder order = RawOrder::sample_fastest;
   Vec3d origin{0, 0, 0};
   Vec3d spacing{1, 1, 1};
 
   // segy; header positions are 1-based, counted from the start of the trace header
-  std::optional<int> inline_byte, crossline_byte, x_byte, y_byte;
+  std::optional<int> inline_byte{}, crossline_byte{}, x_byte{}, y_byte{};
   int inline_width = 4, crossline_width = 4;  ///< bytes, 2 or 4
-  std::optional<double> coordinate_scalar;
-  std::optional<int> sample_format;  ///< overrides the binary header's code
+  std::optional<double> coordinate_scalar{};  ///< in place of the one in byte 71: positive multiplies, negative divides
+  std::optional<int> sample_format{};         ///< overrides the binary header's code
   DuplicateTraces duplicates = DuplicateTraces::reject;
   ZeroTraces zero_traces = ZeroTraces::keep;
 };
@@ -89,9 +89,14 @@ struct ImportedVolume {
 /// source       read in place, piece by piece; memory stays flat whatever its size.
 /// brick_file   where the brick file goes; std::nullopt = an unnamed temporary file that vanishes with the volume.
 ///              A failed import leaves nothing behind.
+/// missing      a position of the survey without any valid sample counts as a missing trace. Infinite samples, and
+///              samples beyond float32, become missing.
+/// warnings     codes are stable: dead_traces, delay, duplicate_traces, extended_text_count, infinite_samples,
+///              no_coordinates, no_valid_samples, sample_count, sample_interval, trace_sample_count.
+///
 /// candidates   when not null: filled with the grids found when the header bytes are ambiguous or absent.
 /// errors       malformed_input, unsupported (2D line, prestack, ...), invalid_argument (options), limit_exceeded,
-/// cancelled.
+///              unavailable, cancelled.
 Result<ImportedVolume> import_volume(const ByteSource& source, const ImportOptions& options,
                                      const std::optional<std::filesystem::path>& brick_file, Progress& progress,
                                      std::vector<GridCandidate>* candidates = nullptr);

@@ -7,26 +7,20 @@
 namespace geosis {
 namespace {
 
-/// The corner at which a walk by swing() sees the whole fan of c: for an open fan its clockwise end, else c itself.
-std::int32_t start_of_fan(const CornerTable& table, std::int32_t c) {
-  std::int32_t at = c;
-  for (;;) {
-    const std::int32_t across = table.opposite[CornerTable::previous(at)];
-    if (across == CornerTable::kNoCorner) return at;
-    at = CornerTable::previous(across);
-    if (at == c) return c;
-  }
-}
-
+/// Corners of c's vertex that are connected with c across edges.
 std::int32_t fan_size(const CornerTable& table, std::int32_t c) {
-  const std::int32_t start = start_of_fan(table, c);
-  std::int32_t size = 0;
-  std::int32_t at = start;
-  do {
+  std::int32_t size = 1;
+  std::int32_t at = table.swing(c);
+  for (; at != CornerTable::kNoCorner; at = table.swing(at)) {
+    if (at == c) return size;
     ++size;
-    at = table.swing(at);
-  } while (at != CornerTable::kNoCorner && at != start);
-  return size;
+  }
+  // An open fan: the other part lies clockwise of c.
+  for (at = c;; ++size) {
+    const std::int32_t across = table.opposite[CornerTable::previous(at)];
+    if (across == CornerTable::kNoCorner) return size;
+    at = CornerTable::previous(across);
+  }
 }
 
 /// Triangles on the same vertices meet across all three edges once each edge has at most two triangles, so it is enough

@@ -26,29 +26,29 @@ Error fault(std::string message) {
   return {ErrorCode::invalid_argument, std::move(message)};
 }
 
-std::string edge_name(std::int32_t lower, std::int32_t higher) {
-  return "edge of vertices " + std::to_string(lower) + " and " + std::to_string(higher);
+bool is_sound(const Triangle& triangle, std::size_t vertices) {
+  const auto [a, b, c] = triangle;
+  const auto in_range = [&](std::int32_t v) { return static_cast<std::uint32_t>(v) < vertices; };
+  return in_range(a) && in_range(b) && in_range(c) && a != b && b != c && c != a;
 }
 
-Result<void> check_triangle(const Triangle& triangle, std::size_t index, std::size_t vertices) {
+Error triangle_fault(const Triangle& triangle, std::size_t index, std::size_t vertices) {
+  const std::string name = "triangle " + std::to_string(index);
   for (const std::int32_t v : triangle) {
-    if (v < 0 || static_cast<std::size_t>(v) >= vertices) {
-      return fault("triangle " + std::to_string(index) + ": vertex index " + std::to_string(v) + "; expected 0.." +
-                   std::to_string(static_cast<std::int64_t>(vertices) - 1));
-    }
+    if (v >= 0 && static_cast<std::size_t>(v) < vertices) continue;
+    return fault(name + ": vertex index " + std::to_string(v) + "; expected 0.." +
+                 std::to_string(static_cast<std::int64_t>(vertices) - 1));
   }
   const auto [a, b, c] = triangle;
-  if (a == b || b == c || c == a) {
-    return fault("triangle " + std::to_string(index) + " names vertex " + std::to_string(a == b ? a : c) + " twice");
-  }
-  return {};
+  return fault(name + " names vertex " + std::to_string(a == b ? a : c) + " twice");
 }
 
 Result<void> fill_vertices(const IndexedMesh& mesh, CornerTable& table) {
   table.vertex.resize(mesh.triangles.size() * 3);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (auto sound = check_triangle(mesh.triangles[t], t, mesh.positions.size()); !sound) return sound;
-    std::copy_n(mesh.triangles[t].begin(), 3, table.vertex.begin() + static_cast<std::ptrdiff_t>(3 * t));
+    const Triangle& triangle = mesh.triangles[t];
+    if (!is_sound(triangle, mesh.positions.size())) return triangle_fault(triangle, t, mesh.positions.size());
+    std::copy_n(triangle.begin(), 3, &table.vertex[3 * t]);
   }
   return {};
 }
@@ -77,37 +77,43 @@ EdgeGroups group_edges(const CornerTable& table, std::size_t vertices) {
   return groups;
 }
 
-Error too_many_triangles(std::int32_t lower, std::span<const EdgeEntry> run) {
-  std::string message = edge_name(lower, higher_of(run[0])) + " lies in " + std::to_string(run.size()) + " triangles:";
-  for (const EdgeEntry entry : run.first(3)) {
-    message.append(" ").append(std::to_string(CornerTable::triangle(corner_of(entry))));
-  }
-  return fault(std::move(message) + (run.size() > 3 ? " ..." : ""));
+/// The entries from `begin` on that belong to the same edge.
+std::span<const EdgeEntry> edge_at(std::span<const EdgeEntry> entries, std::size_t begin) {
+  std::size_t end = begin + 1;
+  while (end < entries.size() && higher_of(entries[end]) == higher_of(entries[begin])) ++end;
+  return entries.subspan(begin, end - begin);
 }
 
-/// Makes the corners of one edge each other's opposites.
-Result<void> match(std::int32_t lower, std::span<const EdgeEntry> run, CornerTable& table) {
-  if (run.size() == 1) return {};
-  if (run.size() > 2) return too_many_triangles(lower, run);
-  const std::int32_t a = corner_of(run[0]);
-  const std::int32_t b = corner_of(run[1]);
-  if (table.vertex[CornerTable::next(a)] == table.vertex[CornerTable::next(b)]) {
-    return fault("triangles " + std::to_string(CornerTable::triangle(a)) + " and " +
-                 std::to_string(CornerTable::triangle(b)) + " run in the same direction along the " +
-                 edge_name(lower, higher_of(run[0])));
-  }
+/// Makes the corners of one edge each other's opposites; false if they cannot be.
+bool match(std::span<const EdgeEntry> edge, CornerTable& table) {
+  if (edge.size() == 1) return true;
+  const std::int32_t a = corner_of(edge[0]);
+  const std::int32_t b = corner_of(edge[1]);
+  if (edge.size() > 2 || table.vertex[CornerTable::next(a)] == table.vertex[CornerTable::next(b)]) return false;
   table.opposite[a] = b;
   table.opposite[b] = a;
-  return {};
+  return true;
 }
 
-Result<void> match_edges(std::int32_t lower, std::span<EdgeEntry> entries, CornerTable& table) {
-  std::sort(entries.begin(), entries.end());
-  for (std::size_t i = 0; i < entries.size();) {
-    std::size_t end = i + 1;
-    while (end < entries.size() && higher_of(entries[end]) == higher_of(entries[i])) ++end;
-    if (auto matched = match(lower, entries.subspan(i, end - i), table); !matched) return matched;
-    i = end;
+Error edge_fault(std::int32_t lower, std::span<const EdgeEntry> edge) {
+  const std::string name = "edge of vertices " + std::to_string(lower) + " and " + std::to_string(higher_of(edge[0]));
+  const auto triangle = [&](std::size_t i) { return std::to_string(CornerTable::triangle(corner_of(edge[i]))); };
+  if (edge.size() == 2) {
+    return fault("triangles " + triangle(0) + " and " + triangle(1) + " run in the same direction along the " + name);
+  }
+  return fault(name + " lies in " + std::to_string(edge.size()) + " triangles: " + triangle(0) + " " + triangle(1) +
+               " " + triangle(2) + (edge.size() > 3 ? " ..." : ""));
+}
+
+Result<void> match_edges(EdgeGroups& groups, CornerTable& table) {
+  for (std::size_t v = 0; v + 2 < groups.first.size(); ++v) {
+    const std::span<EdgeEntry> entries = groups.of(v);
+    std::sort(entries.begin(), entries.end());
+    for (std::size_t i = 0; i < entries.size();) {
+      const auto edge = edge_at(entries, i);
+      if (!match(edge, table)) return edge_fault(static_cast<std::int32_t>(v), edge);
+      i += edge.size();
+    }
   }
   return {};
 }
@@ -126,10 +132,7 @@ Result<CornerTable> build_corner_table(const IndexedMesh& mesh) {
   table.opposite.assign(table.vertex.size(), CornerTable::kNoCorner);
 
   EdgeGroups groups = group_edges(table, mesh.positions.size());
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    auto matched = match_edges(static_cast<std::int32_t>(v), groups.of(v), table);
-    if (!matched) return std::move(matched).error();
-  }
+  if (auto matched = match_edges(groups, table); !matched) return std::move(matched).error();
   return table;
 }
 

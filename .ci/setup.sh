@@ -7,12 +7,10 @@ fail() {
 }
 
 missing_packages() {
-  local wanted installed
-  wanted=$(grep -Ev '^ *(#|$)' .ci/packages | sort)
-  # dpkg-query names unknown packages on stderr and exits 1; those are simply not installed.
-  installed=$(dpkg-query --show --showformat='${db:Status-Status} ${Package}\n' $wanted 2>/dev/null |
-    sed -n 's/^installed //p' | sort -u) || true
-  comm -23 <(echo "$wanted") <(echo "$installed")
+  local package
+  for package in $(grep -Ev '^ *(#|$)' .ci/packages); do
+    dpkg-query --show --showformat='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed || echo "$package"
+  done
 }
 
 # Installs what .ci/packages lists and this machine lacks. Without anything missing it needs no network.

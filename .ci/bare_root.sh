@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# Proves the two commands on a Debian 12 with nothing installed: a minimal root, a clone of HEAD, ./run --once twice (the
+# second time without network) and ./test, each with its time. As root, with mmdebstrap and git; needs the network.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+root=$(mktemp -d /tmp/geosis-bare-root-XXXXXX)
+trap 'rm -rf --one-file-system "$root"' EXIT
+
+in_root() {
+  env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 "${network[@]}" chroot "$root" "$@"
+}
+
+mmdebstrap --quiet --variant=minbase bookworm "$root"
+git clone --quiet --no-hardlinks . "$root/geosis"
+network=()
+time in_root /geosis/run --once
+network=(unshare --net)
+time in_root /geosis/run --once
+time in_root /geosis/.ci/run

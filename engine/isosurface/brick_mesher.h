@@ -1,45 +1,41 @@
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <memory>
-#include <vector>
+#include <cstddef>
 
 #include "engine/base/result.h"
+#include "engine/isosurface/brick_field.h"
+#include "engine/isosurface/brick_mesh.h"
+#include "engine/isosurface/brick_vertices.h"
+#include "engine/isosurface/cap_face.h"
 #include "engine/isosurface/extract.h"
-#include "engine/mesh/indexed_mesh.h"
-#include "engine/volume/bricks.h"
+#include "engine/isosurface/mc33_tables.h"
 
 namespace geosis {
-
-/// Surface inside one brick, with its own vertex numbers.
-///
-/// Vertices on a brick's last layer of nodes belong to the next brick. Both bricks number the vertices of a shared
-/// layer in the same order, so the n-th of upper_layer[axis] is the n-th of the next brick's lower_layer[axis].
-struct BrickMesh {
-  std::vector<Vec3f> positions;
-  std::vector<Triangle> triangles;
-  std::array<std::vector<std::int32_t>, 3> lower_layer, upper_layer;  ///< vertices, in order of creation
-};
 
 /// Meshes brick after brick with one set of buffers. One object a thread.
 class BrickMesher {
  public:
   BrickMesher(const BrickedVolume& volume, IsoRange range, const ExtractOptions& options);
-  ~BrickMesher();
   BrickMesher(const BrickMesher&) = delete;
   BrickMesher& operator=(const BrickMesher&) = delete;
-
-  /// Whether the brick may hold some of the surface: by the index alone.
-  bool is_active(std::size_t brick) const;
 
   /// errors   malformed_input: damaged brick.
   /// cost     one pass over the brick's samples, then O(active cells).
   Result<BrickMesh> mesh(std::size_t brick);
 
  private:
-  class Work;
-  std::unique_ptr<Work> work_;
+  void fill_cells(int a, int b);
+  void fill_cell(int sheet, int a, int b, int c);
+  const Mc33Patch& patch_of(int sheet, int a, int b, int c) const;
+  void cap_cells(int a, int b);
+  void cap_cell(int face, int a, int b, int c);
+  CapFace cap_face_of(int face, int a, int b, int c) const;
+  void add_triangle(std::int32_t p, std::int32_t q, std::int32_t r, bool turned);
+
+  const bool mirrored_;
+  BrickField field_;
+  BrickMesh mesh_;
+  BrickVertices vertices_;
 };
 
 }  // namespace geosis

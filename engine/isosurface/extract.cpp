@@ -9,6 +9,7 @@
 
 #include "engine/base/parallel.h"
 #include "engine/isosurface/brick_mesher.h"
+#include "engine/isosurface/cell_presence.h"
 #include "engine/isosurface/weld.h"
 #include "engine/volume/brick_layout.h"
 
@@ -35,7 +36,7 @@ Result<void> check_request(GridShape shape, IsoRange range, const ExtractOptions
   return {};
 }
 
-/// The bits of a brick's place, interleaved: neighbours in the list are neighbours in space.
+/// The bits of a brick's place, interleaved.
 std::uint64_t morton_code(GridIndex place) {
   std::uint64_t code = 0;
   for (int bit = 0; bit < 21; ++bit) {
@@ -46,10 +47,31 @@ std::uint64_t morton_code(GridIndex place) {
   return code;
 }
 
-std::vector<std::size_t> active_bricks(const BrickLayout& layout, const BrickMesher& mesher) {
+/// Whether a brick may hold some of the surface, by the index alone.
+bool is_active(const BrickedVolume& volume, const BrickLayout& layout, std::size_t brick, IsoRange range,
+               const ExtractOptions& options) {
+  const BrickSummary summary = volume.summary(brick);
+  if (summary.all_missing) return false;
+  const GridIndex place = layout.place(brick), first = layout.first_node(place);
+  const GridShape extent = layout.extent(place);
+  bool at_border = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    const int last = first[axis] + extent[axis] - 1;
+    if (options.region.first[axis] >= last || options.region.last[axis] <= first[axis]) return false;  // no cell
+    at_border = at_border || options.region.first[axis] >= first[axis] || options.region.last[axis] <= last;
+  }
+  const auto [min, max] = summary.range;
+  if ((min < range.low && max >= range.low) || (min <= range.high && max > range.high)) return true;
+  const bool has_inside = max >= range.low && min <= range.high;
+  return options.cap && has_inside && (at_border || misses_nearby(volume, place));
+}
+
+/// Neighbours in the list are neighbours in space.
+std::vector<std::size_t> active_bricks(const BrickedVolume& volume, const BrickLayout& layout, IsoRange range,
+                                       const ExtractOptions& options) {
   std::vector<std::pair<std::uint64_t, std::size_t>> found;
   for (std::size_t brick = 0; brick < layout.brick_count(); ++brick) {
-    if (mesher.is_active(brick)) found.emplace_back(morton_code(layout.place(brick)), brick);
+    if (is_active(volume, layout, brick, range, options)) found.emplace_back(morton_code(layout.place(brick)), brick);
   }
   std::sort(found.begin(), found.end());
   std::vector<std::size_t> bricks;
@@ -90,7 +112,7 @@ Result<IndexedMesh> extract_body(const BrickedVolume& volume, IsoRange range, co
                                  Progress& progress) {
   if (auto checked = check_request(volume.shape(), range, options); !checked) return std::move(checked).error();
   const BrickLayout layout(volume.shape());
-  const auto bricks = active_bricks(layout, BrickMesher(volume, range, options));
+  const auto bricks = active_bricks(volume, layout, range, options);
   auto meshes = mesh_bricks(volume, range, options, bricks, progress);
   if (!meshes) return std::move(meshes).error();
   return weld_bricks(layout, bricks, std::move(meshes).value(), options.max_triangles, options.threads);

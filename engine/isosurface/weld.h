@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
-#include "engine/isosurface/brick_mesher.h"
+#include "engine/isosurface/brick_mesh.h"
 #include "engine/mesh/indexed_mesh.h"
 #include "engine/volume/brick_layout.h"
 

@@ -8,7 +8,7 @@
 namespace geosis {
 namespace {
 
-using Wide = __int128;
+__extension__ using Wide = __int128;
 
 TEST(Exact, AddsWhatADoubleWouldLose) {
   const Exact sum = Exact(1e30) + Exact(1) - Exact(1e30);

@@ -9,8 +9,8 @@ namespace {
 // Places are fractions of the survey: u along inlines, v along crosslines, depth along samples.
 constexpr double kLayers = 26;         // layers from top to bottom of the survey
 constexpr double kChannelDepth = 0.5;  // of the channel's axis, where the folds leave the layers
-constexpr double kChannelHalfWidth = 0.075;
-constexpr double kChannelHalfThickness = 0.055;
+constexpr double kChannelHalfWidth = 0.11;
+constexpr double kChannelHalfThickness = 0.075;
 constexpr double kChannelEnd = 0.7;  // where the lobes begin
 
 /// splitmix64's finalizer: neighbouring numbers become unrelated ones.
@@ -71,7 +71,8 @@ SyntheticSurvey::SyntheticSurvey(const SyntheticSurveyOptions& options) : option
   for (std::size_t n = 0; n < lobes_.size(); ++n) {
     const double along = random_at(options.seed, lobe_places, 2 * n);
     const double across = random_at(options.seed, lobe_places, 2 * n + 1);
-    lobes_[n] = {kChannelEnd + 0.05 + 0.09 * static_cast<double>(n) + 0.03 * along, 0.13 * (across - 0.5), 0.11};
+    lobes_[n] = {kChannelEnd + 0.06 * static_cast<double>(n) + 0.04 * along,
+                 0.16 * (static_cast<double>(n) - 1) + 0.06 * (across - 0.5), 0.17};
   }
 }
 
@@ -83,8 +84,8 @@ bool SyntheticSurvey::has_trace(std::int32_t i, std::int32_t j) const {
     if (is_cut) return false;
   }
   if (options_.holes) {
-    const double du = (u - 0.42) / 0.07;
-    const double dv = (v - channel_centre(0.42) - 0.04) / 0.06;
+    const double du = (u - 0.42) / 0.05;
+    const double dv = (v - channel_centre(0.42) - 0.04) / 0.055;
     if (du * du + dv * dv < 1) return false;
     const auto place = static_cast<std::uint64_t>(i) * static_cast<std::uint64_t>(options_.shape.crosslines) +
                        static_cast<std::uint64_t>(j);
@@ -103,7 +104,7 @@ void SyntheticSurvey::fill_trace(std::int32_t i, std::int32_t j, std::span<float
     const double depth = fraction(static_cast<std::int32_t>(k), options_.shape.samples) - shift;
     // The channel is cut into the layers: deepest in its middle, flat on top.
     const double bright = fill * bump((depth - kChannelDepth) / (kChannelHalfThickness * (0.4 + 0.6 * fill)));
-    const double rough = 0.06 * (random_at(options_.seed, noise, trace ^ k) - 0.5);
+    const double rough = 0.04 * (random_at(options_.seed, noise, trace ^ k) - 0.5);
     samples[k] = static_cast<float>((1 - bright) * 0.42 * reflector(depth * kLayers) + bright + rough);
   }
 }
@@ -129,7 +130,7 @@ double SyntheticSurvey::reflector(double layer) const {
 }
 
 double SyntheticSurvey::channel_centre(double u) const {
-  return 0.5 + 0.17 * wave(1.45 * u + phase_[2]) + 0.05 * wave(3.3 * u + phase_[3]);
+  return 0.5 + 0.2 * wave(1.45 * u + phase_[2]) + 0.05 * wave(3.3 * u + phase_[3]);
 }
 
 /// How much channel or lobe there is at a place: 0 ... 1.
@@ -140,8 +141,8 @@ double SyntheticSurvey::sand(double u, double v) const {
   const double across = (v - channel_centre(u)) / std::sqrt(1 + slope * slope);
   const double fade = 1 - smooth_step((u - kChannelEnd) / 0.1);
   // A bar in the middle of the channel: the flow parts around it and joins again.
-  const double bar = bump((u - 0.17) / 0.055) * bump(across / 0.04);
-  double most = fade * std::max(0.0, bump(across / kChannelHalfWidth) - 1.2 * bar);
+  const double bar = bump((u - 0.2) / 0.08) * bump(across / 0.035);
+  double most = fade * std::max(0.0, bump(across / kChannelHalfWidth) - 1.4 * bar);
   for (const Lobe& lobe : lobes_) {
     const double du = (u - lobe.u) / lobe.radius;
     const double dv = (v - channel_centre(kChannelEnd) - lobe.v) / (1.3 * lobe.radius);

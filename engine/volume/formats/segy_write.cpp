@@ -117,7 +117,7 @@ class OutputFile {
   ~OutputFile() {
     if (!stream_) return;
     std::error_code ignored;
-    std::filesystem::remove(path_, ignored);
+    if (std::filesystem::is_regular_file(path_, ignored)) std::filesystem::remove(path_, ignored);
   }
 
   Result<void> write(std::span<const std::byte> bytes) {

@@ -46,19 +46,16 @@ TEST(EnclosedVolume, BallHasItsVolume) {
   EXPECT_NEAR(enclosed(ball, {0, kInf}, BodyMode::sampled), expected, 0.01 * expected);
 }
 
-// A triangulation cuts the corners of curved patches, both inwards and outwards; over a field this evens out.
-TEST(EnclosedVolume, RandomFieldsAgreeWithSupersampling) {
+// Smooth fields only: in noise the flat triangles miss much of what a trilinear cell bulges.
+TEST(EnclosedVolume, SmoothFieldsAgreeWithSupersampling) {
   Random random(test_seed(2));
-  double found = 0, expected = 0;
-  for (int trial = 0; trial < 20; ++trial) {
-    const ScalarField field = with_holes(uniform_noise({6, 6, 6}, random, -1, 1), random, trial % 2 == 0 ? 0 : 0.03);
-    const IsoRange range{random.between(-0.5f, -0.1f), random.between(0.1f, 0.5f)};
-    const double one = enclosed(field, range), fine = supersampled_volume(field, range, BodyMode::exact, 16);
-    EXPECT_NEAR(one, fine, 0.04 * fine + 0.5) << "trial " << trial;
-    found += one;
-    expected += fine;
+  for (const double holes : {0.0, 0.001}) {
+    const ScalarField field = with_holes(gyroid({30, 24, 27}, 20), random, holes);
+    for (const IsoRange range : {IsoRange{0, kInf}, {-0.5f, 0.5f}, {-kInf, -0.7f}, {0.1f, 0.3f}}) {
+      const double fine = supersampled_volume(field, range, BodyMode::exact, 8);
+      EXPECT_NEAR(enclosed(field, range), fine, 0.01 * fine) << range.low << " to " << range.high;
+    }
   }
-  EXPECT_NEAR(found, expected, 0.02 * expected);
 }
 
 TEST(EnclosedVolume, BodyAndRestFillTheBox) {
@@ -67,7 +64,7 @@ TEST(EnclosedVolume, BodyAndRestFillTheBox) {
     const ScalarField field = uniform_noise({6, 5, 7}, random, -1, 1);
     const float level = random.between(-0.3f, 0.3f);
     const double sum = enclosed(field, {level, kInf}) + enclosed(field, {-kInf, level});
-    EXPECT_NEAR(sum, 5 * 4 * 6, 1.5) << "trial " << trial;
+    EXPECT_NEAR(sum, 5 * 4 * 6, 1e-9) << "trial " << trial;
   }
 }
 

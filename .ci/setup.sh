@@ -8,7 +8,7 @@ fail() {
 
 missing_packages() {
   local package
-  for package in $(grep -Ev '^ *(#|$)' .ci/packages); do
+  grep -Ev '^ *(#|$)' .ci/packages | while read -r package; do
     dpkg-query --show --showformat='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed || echo "$package"
   done
 }

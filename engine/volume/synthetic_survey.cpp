@@ -68,11 +68,12 @@ SyntheticSurvey::SyntheticSurvey(const SyntheticSurveyOptions& options) : option
     reflectivity_[n] = n % 2 == 0 ? size : -size;
   }
   for (std::size_t n = 0; n < phase_.size(); ++n) phase_[n] = random_at(options.seed, phases, n);
+  // One lobe at the mouth and two that fan out from it.
+  constexpr std::array<Lobe, 3> kFan = {{{0.77, 0.0, 0.2}, {0.85, 0.12, 0.18}, {0.84, -0.13, 0.17}}};
   for (std::size_t n = 0; n < lobes_.size(); ++n) {
-    const double along = random_at(options.seed, lobe_places, 2 * n);
-    const double across = random_at(options.seed, lobe_places, 2 * n + 1);
-    lobes_[n] = {kChannelEnd + 0.06 * static_cast<double>(n) + 0.04 * along,
-                 0.16 * (static_cast<double>(n) - 1) + 0.06 * (across - 0.5), 0.17};
+    const double along = random_at(options.seed, lobe_places, 2 * n) - 0.5;
+    const double across = random_at(options.seed, lobe_places, 2 * n + 1) - 0.5;
+    lobes_[n] = {kFan[n].u + 0.04 * along, kFan[n].v + 0.04 * across, kFan[n].radius};
   }
 }
 

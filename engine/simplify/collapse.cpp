@@ -42,10 +42,11 @@ void gather(const MergedStar& star, LocalVertex u, LocalVertex v, std::span<cons
   }
 }
 
-/// False if a triangle turns too far or gets too thin. All lanes are computed, without branches, four at a time.
-bool move_triangles(StarLanes& lanes, Vec3f position) {
+/// Moves the triangles first ... first + kLanes - 1; false if one turns too far or gets too thin. No branches: four
+/// lanes are one vector.
+bool move_triangles(StarLanes& lanes, std::size_t first, Vec3f position) {
   std::int32_t bad = 0;
-  for (std::size_t i = 0; i < lanes.used; ++i) {
+  for (std::size_t i = first; i < first + kLanes; ++i) {
     const Vec3f a = lanes.a[i];
     const Vec3f side = lanes.b[i] - a;
     const Vec3f arm = position - a;
@@ -144,7 +145,10 @@ MovedStar move_star(const MergedStar& star, LocalVertex u, LocalVertex v, Vec3f 
   StarLanes lanes;
   gather(star, u, v, vertices, lanes);
   MovedStar moved;
-  if (!move_triangles(lanes, position) || vertices_meet(star, vertices)) return moved;
+  for (std::size_t first = 0; first < lanes.used; first += kLanes) {
+    if (!move_triangles(lanes, first, position)) return moved;
+  }
+  if (vertices_meet(star, vertices)) return moved;
   for (int i = 0; i < star.degree; ++i) add_plane(moved.planes, lanes.normal[i], lanes.weight[i]);
   moved.sound = true;
   return moved;

@@ -25,7 +25,7 @@ Vec3f best_point(const Quadric& sum, Vec3f edge, MergeTarget target);
 /// little of the edge's length, so that flat regions have an order too.
 ///
 /// costs    room for neighbours.size() rounded up to a multiple of kCostLanes.
-inline constexpr std::size_t kCostLanes = 8;
+inline constexpr std::size_t kCostLanes = 4;
 void edge_costs(std::span<const WorkingVertex> vertices, LocalVertex u, std::span<const LocalVertex> neighbours,
                 std::span<float> costs);
 

@@ -91,14 +91,25 @@ IndexedMesh plate_with_hole(int size) {
 
 TEST(BuildLods, ReachesTheAskedRatiosOnASphere) {
   const IndexedMesh m0 = sphere();
-  const LodHierarchy hierarchy = lods(m0);
-  ASSERT_EQ(hierarchy.levels.size(), 5u);
+  for (const WindowSizes& sizes : {WindowSizes{}, kSmallWindows}) {
+    const LodHierarchy hierarchy = lods(m0, {}, sizes);
+    ASSERT_EQ(hierarchy.levels.size(), 5u);
+    for (const LodLevel& level : hierarchy.levels) {
+      const double asked = level.asked_ratio * static_cast<double>(m0.triangles.size());
+      EXPECT_NEAR(static_cast<double>(level.mesh.triangles.size()), asked, 0.005 * asked + 2);
+      EXPECT_EQ(level.stopped_by, StoppedBy::none);
+    }
+    expect_sound_levels(m0, hierarchy);
+  }
+}
+
+TEST(BuildLods, ReachesGentleRatiosInManyWindows) {
+  const IndexedMesh m0 = sphere();
+  const LodHierarchy hierarchy = lods(m0, {.ratios = {0.95, 0.9, 0.6, 0.5}}, kSmallWindows);
   for (const LodLevel& level : hierarchy.levels) {
     const double asked = level.asked_ratio * static_cast<double>(m0.triangles.size());
     EXPECT_NEAR(static_cast<double>(level.mesh.triangles.size()), asked, 0.005 * asked + 2);
-    EXPECT_EQ(level.stopped_by, StoppedBy::none);
   }
-  expect_sound_levels(m0, hierarchy);
 }
 
 TEST(BuildLods, LevelOfRatioOneIsTheInput) {

@@ -78,7 +78,7 @@ std::string fault_of_shape(const IndexedMesh& mesh) {
 }
 
 double mean_distance(const IndexedMesh& a, const IndexedMesh& b) {
-  const std::size_t step = std::max<std::size_t>(a.positions.size() / 500, 1);
+  const std::size_t step = std::max<std::size_t>(a.positions.size() / 200, 1);
   double sum = 0;
   int samples = 0;
   for (std::size_t v = 0; v < a.positions.size(); v += step, ++samples) {

@@ -23,7 +23,7 @@ std::vector<TopologyOfComponent> sorted_topology_of(const IndexedMesh& mesh);
 /// The first vertex off the lattice or unused, or triangle of zero area (exactly); "none" if there is none.
 std::string fault_of_shape(const IndexedMesh& mesh);
 
-/// Mean distance of some 500 of a's vertices from the nearest point of b's surface, in voxels.
+/// Mean distance of some 200 of a's vertices from the nearest point of b's surface, in voxels.
 double mean_distance(const IndexedMesh& a, const IndexedMesh& b);
 
 }  // namespace geosis

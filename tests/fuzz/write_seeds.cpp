@@ -1,0 +1,80 @@
+// Writes small valid inputs for the fuzz targets: write_fuzz_seeds FOLDER -> FOLDER/fuzz_<target>/<name>.
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "engine/volume/brick_writer.h"
+#include "engine/volume/formats/segy_write.h"
+
+namespace {
+
+using geosis::GridShape;
+
+std::string read_file(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+bool write_file(const std::filesystem::path& path, const std::string& bytes) {
+  std::ofstream out(path, std::ios::binary);
+  out << bytes;
+  return out.good();
+}
+
+void ramp(std::int32_t i, std::int32_t j, std::span<float> samples) {
+  for (std::size_t k = 0; k < samples.size(); ++k) samples[k] = static_cast<float>(i + 2 * j) + static_cast<float>(k);
+}
+
+// The fuzz target takes its options from two bytes before the file.
+bool write_segy_seed(const std::filesystem::path& folder) {
+  geosis::SegySurvey survey;
+  survey.shape = {3, 4, 2};
+  survey.inline_axis = {10, 2};
+  survey.crossline_axis = {20, 1};
+  survey.geometry = geosis::AffineGeometry({1000, 2000, 0}, {25, 0, 0}, {0, 12.5, 0}, {0, 0, 4});
+  geosis::NoProgress unwatched;
+  const auto plain = folder / "survey.sgy";
+  if (!geosis::write_segy(plain, survey, ramp, {}, unwatched)) return false;
+  const bool written = write_file(folder / "survey", std::string(2, '\0') + read_file(plain));
+  std::filesystem::remove(plain);
+  return written;
+}
+
+bool write_raw_seed(const std::filesystem::path& folder) {
+  const std::string options = {3, 4, 5, 0, 3, 0, 0, 0};  // 3 x 4 x 5 uint8
+  return write_file(folder / "uint8", options + std::string(3 * 4 * 5, 'x'));
+}
+
+bool write_brick_seed(const std::filesystem::path& folder) {
+  auto writer = geosis::BrickWriter::create({3, 2, 66}, folder / "bricks");
+  if (!writer) return false;
+  std::vector<float> samples(66);
+  for (std::int32_t i = 0; i < 3; ++i)
+    for (std::int32_t j = 0; j < 2; ++j) {
+      ramp(i, j, samples);
+      writer->put(i, j, 0, samples);
+    }
+  geosis::NoProgress unwatched;
+  return std::move(*writer).finish(1, unwatched).has_value();
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+  if (count != 2) {
+    std::fprintf(stderr, "usage: write_fuzz_seeds FOLDER\n");
+    return 2;
+  }
+  const std::filesystem::path folder = arguments[1];
+  std::error_code failed;
+  for (const char* target : {"fuzz_import_segy", "fuzz_import_raw", "fuzz_brick_file"})
+    std::filesystem::create_directories(folder / target, failed);
+  const bool written = !failed && write_segy_seed(folder / "fuzz_import_segy") &&
+                       write_raw_seed(folder / "fuzz_import_raw") && write_brick_seed(folder / "fuzz_brick_file");
+  return written ? 0 : 1;
+}

@@ -95,7 +95,8 @@ inline IndexedMesh box(Vec3f low, Vec3f high) {
   return mesh;
 }
 
-inline void append(IndexedMesh& mesh, const IndexedMesh& other) {
+/// By value: a mesh may be appended to itself.
+inline void append(IndexedMesh& mesh, IndexedMesh other) {
   const auto offset = static_cast<std::int32_t>(mesh.positions.size());
   mesh.positions.insert(mesh.positions.end(), other.positions.begin(), other.positions.end());
   for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + offset, b + offset, c + offset});

@@ -138,6 +138,26 @@ TEST(DecodeLevel, NamesThePartThatIsDamaged) {
   EXPECT_EQ(decoded.error().message.substr(0, 7), "part 1:");
 }
 
+/// Whatever the bytes, the answer is a mesh with indices in range or an error.
+TEST(DecodeLevel, DamagedBytesNeverCrash) {
+  const unsigned seed = std::random_device{}();
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  std::mt19937 random(seed);
+  const auto encoded = encode_level(test::random_shapes(random, 3), {.position_bits = 12, .max_part_triangles = 60});
+  ASSERT_TRUE(encoded);
+  for (int trial = 0; trial < 500; ++trial) {
+    EncodedLevel damaged = *encoded;
+    std::vector<std::byte>& bytes = damaged.parts[random() % damaged.parts.size()].bytes;
+    for (auto flips = random() % 4 + 1; flips > 0; --flips) bytes[random() % bytes.size()] = std::byte(random() % 256);
+    if (trial % 8 == 0) bytes.resize(random() % bytes.size());
+    const auto decoded = decode_level(bytes_of(damaged));
+    if (!decoded) continue;
+    for (const Triangle& triangle : decoded->triangles) {
+      for (const std::int32_t v : triangle) ASSERT_LT(static_cast<std::size_t>(v), decoded->positions.size());
+    }
+  }
+}
+
 /// Debian's own reader of the files we write.
 TEST(EncodeLevel, DebiansDecoderReadsEveryPart) {
 #ifndef GEOSIS_DRACO_DECODER

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "server/app/byte_stream.h"
+
+namespace geosis::server::http {
+
+/// A request as handlers see it: parsed, framed, decoded. Names of headers are lower case.
+struct Request {
+  std::string method, path;
+  std::map<std::string, std::string> headers;
+  std::multimap<std::string, std::string> query;
+  std::vector<std::string> captures;  ///< of the route's pattern, in order
+  std::string body;                   ///< of small bodies, complete
+  std::optional<std::uint64_t> content_length;
+  std::string request_id;
+};
+
+/// The body of an upload, pulled by its handler on a thread of its own. errors: malformed_input (framing, cut short),
+/// limit_exceeded (over the limit), deadline_exceeded (slower than the minimum rate).
+class BodyReader {
+ public:
+  virtual ~BodyReader() = default;
+  /// Up to into.size() bytes; 0 at the end.
+  virtual Result<std::size_t> read(std::span<std::byte> into) = 0;
+};
+
+/// An answer: a small body, or a stream that the front writes itself.
+struct Reply {
+  int status = 200;
+  std::vector<std::pair<std::string, std::string>> headers;  ///< without Content-Length and Connection
+  std::string body;
+  std::unique_ptr<ByteStream> stream;   ///< instead of the body
+  std::optional<std::uint64_t> length;  ///< of the stream; unset = chunked
+};
+
+using Handler = std::function<Reply(const Request&)>;
+using UploadHandler = std::function<Reply(const Request&, BodyReader&)>;
+
+}  // namespace geosis::server::http

@@ -55,7 +55,7 @@ std::uint64_t hash(std::span<const std::byte> bytes) {
 
 std::uint64_t header_checksum(Header header, std::span<const Section> sections) {
   header.checksum = 0;
-  const auto table = std::as_bytes(sections);
+  const auto table = std::as_bytes(sections);  // at least one
   std::vector<std::byte> bytes(sizeof header + table.size());
   std::memcpy(bytes.data(), &header, sizeof header);
   std::memcpy(bytes.data() + sizeof header, table.data(), table.size());
@@ -80,11 +80,12 @@ Result<Header> read_header(std::span<const std::byte> file) {
 }
 
 Result<std::vector<Section>> read_sections(const Header& header, std::span<const std::byte> file) {
-  if (header.sections > kMaxSections) return damaged(std::to_string(header.sections) + " sections");
+  if (header.sections == 0 || header.sections > kMaxSections)
+    return damaged(std::to_string(header.sections) + " sections");
   const std::size_t table_bytes = header.sections * sizeof(Section);
   if (file.size() - sizeof header < table_bytes) return damaged("its section table is cut short");
   std::vector<Section> sections(header.sections);
-  if (!sections.empty()) std::memcpy(sections.data(), file.data() + sizeof header, table_bytes);
+  std::memcpy(sections.data(), file.data() + sizeof header, table_bytes);
   if (header_checksum(header, sections) != header.checksum) return damaged("its header fails its checksum");
   for (const Section& s : sections)
     if (s.offset > file.size() || s.bytes > file.size() - s.offset)

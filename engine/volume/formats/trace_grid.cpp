@@ -70,8 +70,8 @@ std::vector<Proposal> propose(const std::vector<WordPair>& pairs, const TraceSca
   return proposals;
 }
 
-// The second pass: puts every trace into every proposed grid. False when a header says something else than in the first
-// pass, as it does in a file that is being written.
+// The second pass: puts every trace into every proposed grid. An error when a header says something else than in the
+// first pass, as it does in a file that is being written.
 Result<void> place_traces(const ByteSource& source, const SegyLayout& layout, Progress& progress,
                           std::vector<Proposal>& proposals) {
   std::vector<std::int64_t> positions(proposals.size());

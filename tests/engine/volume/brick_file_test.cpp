@@ -154,6 +154,12 @@ TEST(BrickFile, RefusesForgedOffsetsSizesAndShapes) {
   }
 }
 
+TEST(BrickFile, RefusesAHeaderWithoutSections) {
+  const ScratchFolder folder;
+  write_ramp(folder / "ramp");
+  EXPECT_FALSE(opens(forged(read_file(folder / "ramp"), 8, 1)));  // version 1, no sections
+}
+
 TEST(BrickFile, LeavesNothingBehindWhenCancelledOrAbandoned) {
   class Cancelled final : public Progress {
    public:

@@ -1,0 +1,116 @@
+// Everything that leaves the engine, hashed: the same on every processor, under every vector target, for any number of
+// threads, and the same as when these goldens were recorded.
+//
+// When a hash differs because output bytes were meant to change: raise kResultVersion in engine/pipeline/reconstruct.h
+// and put the hashes that the failing test prints here.
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <hwy/highway.h>
+
+#include "engine/base/digest.h"
+#include "engine/pipeline/reconstruct.h"
+#include "engine/volume/brick_file.h"
+#include "engine/volume/formats/import.h"
+#include "engine/volume/synthetic_survey.h"
+#include "tests/support/shared_data.h"
+
+namespace geosis {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr int kGoldenResultVersion = 1;
+
+template <class T>
+void add(Sha256& digest, const T& value) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  digest.update(std::as_bytes(std::span(&value, 1)));
+}
+
+void add_certificate(Sha256& digest, const ReconstructedLevel& level) {
+  const TopologyReport& t = level.topology;
+  for (const std::int64_t count : {t.vertices, t.triangles, t.components, t.euler, t.genus, t.boundary_loops,
+                                   std::int64_t{t.manifold}, level.distance.samples}) {
+    add(digest, count);
+  }
+  for (const double measure : {level.measures.area, level.measures.volume, level.distance.mean_voxels,
+                               level.distance.max_voxels, level.volume_drift, level.lod.cost}) {
+    add(digest, measure);
+  }
+}
+
+/// Hash of all parts and certificates of all levels.
+std::string reconstruct_and_hash(const BrickedVolume& volume, const ReconstructOptions& options) {
+  NoProgress progress;
+  const auto result = reconstruct(volume, AffineGeometry(), options, progress);
+  EXPECT_TRUE(result) << result.error().message;
+  Sha256 digest;
+  for (const ReconstructedLevel& level : result->levels) {
+    for (const EncodedPart& part : level.encoded.parts) digest.update(part.bytes);
+    add_certificate(digest, level);
+  }
+  return std::move(digest).hex();
+}
+
+/// The synthetic survey, its missing traces as NaN.
+std::unique_ptr<BrickedVolume> synthetic_volume(GridShape shape) {
+  const SyntheticSurvey survey({.shape = shape});
+  std::vector<float> samples(static_cast<std::size_t>(shape.count()), std::numeric_limits<float>::quiet_NaN());
+  for (int i = 0; i < shape.inlines; ++i) {
+    for (int j = 0; j < shape.crosslines; ++j) {
+      if (!survey.has_trace(i, j)) continue;
+      const auto at = static_cast<std::size_t>(i * shape.crosslines + j) * static_cast<std::size_t>(shape.samples);
+      survey.fill_trace(i, j, std::span(samples).subspan(at, static_cast<std::size_t>(shape.samples)));
+    }
+  }
+  return make_bricked_volume(shape, samples);
+}
+
+void expect_hash(const BrickedVolume& volume, ReconstructOptions options, int threads, const std::string& golden) {
+  options.threads = threads;
+  EXPECT_EQ(reconstruct_and_hash(volume, options), golden) << threads << " threads";
+}
+
+/// One hash for 1, 2 and 8 threads, and under every vector target that this processor has.
+void expect_one_hash(const BrickedVolume& volume, const ReconstructOptions& options, const std::string& golden) {
+  ASSERT_EQ(kResultVersion, kGoldenResultVersion) << "record the goldens of the new result version";
+  for (const int threads : {1, 2, 8}) expect_hash(volume, options, threads, golden);
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    SCOPED_TRACE(hwy::TargetName(target));
+    hwy::SetSupportedTargetsForTest(target);
+    expect_hash(volume, options, 2, golden);
+  }
+  hwy::SetSupportedTargetsForTest(0);  // all targets again
+}
+
+TEST(SameBytes, OfTheSyntheticSurveyWithItsHoles) {
+  const auto volume = synthetic_volume({70, 90, 66});
+  expect_one_hash(*volume, {.range = {0.6f, kInfinity}},
+                  "02278752e5e23695ca903d2d358674538bac1185ffb3c434ae4a9d298c002ad0");
+}
+
+TEST(SameBytes, OfABandWithoutCapInTheSampledMode) {
+  const auto volume = synthetic_volume({70, 90, 66});
+  expect_one_hash(*volume, {.range = {0.2f, 0.5f}, .mode = BodyMode::sampled, .cap = false},
+                  "c2d5c852a25fcb0f11f4449f773b22e5dca904ec035d05e7f5698a6266c3fb53");
+}
+
+TEST(SameBytes, OfARealSurvey) {
+  const auto path = shared_file("seismic/petrel_buildup_3d.sgy");
+  if (!exists(path)) GTEST_SKIP() << path << " is absent";
+  NoProgress progress;
+  const auto source = open_file(path);
+  ASSERT_TRUE(source) << source.error().message;
+  const auto imported = import_volume(**source, {}, std::nullopt, progress);
+  ASSERT_TRUE(imported) << imported.error().message;
+  expect_one_hash(*imported->samples, {.range = {0.5f, kInfinity}},
+                  "b0f8bee8323ad11e40ef24841d38b430eb18df8185d65d560990021f41049b6a");
+}
+
+}  // namespace
+}  // namespace geosis

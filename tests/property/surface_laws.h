@@ -17,8 +17,8 @@ struct Verdict {
   bool decided = true;  ///< false: the field's topology has more than one right answer, so it was not compared
 };
 
-/// The capped surface is closed, manifold and oriented outwards, on the lattice, with the oracle's Euler characteristic
-/// and number of components. Without missing samples no two vertices share a position.
+/// The capped surface is closed, manifold, on the lattice, and oriented outwards where the body is not thin, with the
+/// oracle's Euler characteristic and number of components. Without missing samples no two vertices share a position.
 Verdict judge_closed_surface(const ScalarField& field, IsoRange range, BodyMode mode);
 
 /// The surface without caps is manifold with boundary and has the oracle's Euler characteristic.

@@ -8,12 +8,12 @@ namespace geosis::server {
 namespace {
 
 /// Index positions to the requested space, row-major.
-std::array<double, 16> output_transform(const VolumeDescription& volume, const ReconstructOptions& options) {
+std::array<double, 16> output_transform(const VolumeSummary& volume, const ReconstructOptions& options) {
   return options.index_space ? *AffineGeometry().affine() : *volume.geometry.affine();
 }
 
 /// Two axes in metres and one in milliseconds make no area: measures in such a space have no meaning.
-bool has_measures(const VolumeDescription& volume, const ReconstructOptions& options) {
+bool has_measures(const VolumeSummary& volume, const ReconstructOptions& options) {
   return options.index_space || volume.sample_unit != "ms";
 }
 
@@ -57,7 +57,7 @@ Json distance_document(const SurfaceDistance& distance, bool index_space) {
           {"samples", distance.samples}};
 }
 
-Json level_document(const ReconstructedLevel& level, std::size_t number, const VolumeDescription& volume,
+Json level_document(const ReconstructedLevel& level, std::size_t number, const VolumeSummary& volume,
                     const ReconstructOptions& options, const ManifestUrls& urls) {
   const bool measured = has_measures(volume, options);
   const auto& topology = level.topology;
@@ -87,17 +87,16 @@ Json level_document(const ReconstructedLevel& level, std::size_t number, const V
 
 }  // namespace
 
-Json manifest_document(const VolumeDescription& volume, const ReconstructOptions& options,
+Json manifest_document(const VolumeSummary& volume, const ReconstructOptions& options,
                        const Reconstruction& reconstruction, const ManifestUrls& urls) {
   const Json request = request_document(options, volume.shape);
-  const std::string volume_name = volume_id(volume);
   const auto transform = output_transform(volume, options);
   Json levels = Json::array();
   for (const auto& level : reconstruction.levels) {
     levels.push_back(level_document(level, levels.size(), volume, options, urls));
   }
-  return {{"id", extraction_id(volume_name, request, kResultVersion)},
-          {"volume", volume_name},
+  return {{"id", extraction_id(volume.id, request, kResultVersion)},
+          {"volume", volume.id},
           {"engine", {{"name", "geosis"}, {"result_version", kResultVersion}}},
           {"request", request},
           {"transform", transform},
@@ -105,6 +104,19 @@ Json manifest_document(const VolumeDescription& volume, const ReconstructOptions
           {"levels", levels},
           {"empty", reconstruction.levels.empty()},
           {"bodies_url", nullptr}};
+}
+
+Json manifest_document(const VolumeDescription& volume, const ReconstructOptions& options,
+                       const Reconstruction& reconstruction, const ManifestUrls& urls) {
+  return manifest_document(summarize(volume), options, reconstruction, urls);
+}
+
+Json early_level_document(const ReconstructedLevel& level, std::size_t number, const VolumeSummary& volume,
+                          const ReconstructOptions& options, const ManifestUrls& urls) {
+  Json entry = level_document(level, number, volume, options, urls);
+  entry.erase("distance");
+  entry.erase("volume_drift");
+  return entry;
 }
 
 }  // namespace geosis::server

@@ -7,6 +7,7 @@
 #include "engine/pipeline/reconstruct.h"
 #include "engine/volume/formats/import.h"
 #include "server/documents/json_text.h"
+#include "server/documents/volume_document.h"
 
 namespace geosis::server {
 
@@ -22,7 +23,13 @@ struct ManifestUrls {
 ///
 /// Lengths, areas and volumes are in the units of the requested space: null for a time survey in world space, which
 /// has none; distances are measured in voxels, and in the requested space only when that is the index space.
+Json manifest_document(const VolumeSummary& volume, const ReconstructOptions& options,
+                       const Reconstruction& reconstruction, const ManifestUrls& urls);
 Json manifest_document(const VolumeDescription& volume, const ReconstructOptions& options,
                        const Reconstruction& reconstruction, const ManifestUrls& urls);
+
+/// A level's entry as it is known when the level is encoded: without distance and volume drift.
+Json early_level_document(const ReconstructedLevel& level, std::size_t number, const VolumeSummary& volume,
+                          const ReconstructOptions& options, const ManifestUrls& urls);
 
 }  // namespace geosis::server

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "engine/base/result.h"
 #include "engine/volume/formats/import.h"
 #include "server/documents/json_text.h"
 
@@ -12,6 +13,21 @@ namespace geosis::server {
 ///
 /// name   what people call the volume, for example its file's name.
 Json volume_document(const VolumeDescription& volume, const std::string& name);
+
+/// What a result needs to know of its volume.
+struct VolumeSummary {
+  std::string id;
+  GridShape shape;
+  AffineGeometry geometry;
+  std::string sample_unit;
+};
+
+VolumeSummary summarize(const VolumeDescription& volume);
+
+/// The summary from a volume document that volume_document made.
+///
+/// errors   malformed_input: a field that is absent or makes no sense.
+Result<VolumeSummary> parse_volume_document(const Json& document);
 
 /// The grids that a refused survey could be, as its refusal lists them.
 Json candidates_document(const std::vector<GridCandidate>& candidates);

@@ -1,5 +1,6 @@
 #include "server/cli/level_files.h"
 
+#include <algorithm>
 #include <regex>
 
 #include "engine/codec/obj.h"
@@ -65,8 +66,8 @@ ManifestUrls file_urls() {
 }
 
 bool is_result_file(const std::string& name) {
-  static const std::regex pattern(R"(manifest\.json|lod\d+(\.\d+)?\.drc|lod\d+\.(ply|obj))");
-  return std::regex_match(name, pattern);
+  static const std::regex kPattern(R"(manifest\.json|lod\d+(\.\d+)?\.drc|lod\d+\.(ply|obj))");
+  return std::regex_match(name, kPattern);
 }
 
 Result<void> write_result(OutputFolder& folder, const VolumeDescription& volume, const ReconstructOptions& options,

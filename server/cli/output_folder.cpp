@@ -2,7 +2,6 @@
 
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <system_error>
 #include <utility>
 
@@ -11,8 +10,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Error failure(const fs::path& path, const char* what, const std::string& reason) {
-  return {ErrorCode::unavailable, path.string() + ": " + what + ": " + reason};
+Error failure(const fs::path& path, const char* what, const std::error_code& reason) {
+  return {ErrorCode::unavailable, path.string() + ": " + what + ": " + reason.message()};
+}
+
+std::error_code last_system_error() {
+  return {errno, std::generic_category()};
 }
 
 }  // namespace
@@ -20,10 +23,10 @@ Error failure(const fs::path& path, const char* what, const std::string& reason)
 Result<OutputFolder> OutputFolder::open(const fs::path& folder) {
   std::error_code problem;
   const bool made_folder = fs::create_directories(folder, problem);
-  if (problem) return failure(folder, "cannot make this folder", problem.message());
+  if (problem) return failure(folder, "cannot make this folder", problem);
   std::string hidden = (folder / ".geosis-XXXXXX").string();
   if (!mkdtemp(hidden.data())) {
-    const std::string reason = std::strerror(errno);
+    const auto reason = last_system_error();
     if (made_folder) fs::remove(folder, problem);
     return failure(folder, "cannot write in this folder", reason);
   }
@@ -47,10 +50,10 @@ OutputFolder::~OutputFolder() {
 
 Result<void> OutputFolder::write(const std::string& name, const std::function<Result<void>(std::ostream&)>& fill) {
   std::ofstream stream(hidden_ / name, std::ios::binary);
-  if (!stream) return failure(folder_ / name, "cannot write", std::strerror(errno));
+  if (!stream) return failure(folder_ / name, "cannot write", last_system_error());
   if (auto filled = fill(stream); !filled) return filled;
   stream.close();
-  if (!stream) return failure(folder_ / name, "cannot write", std::strerror(errno));
+  if (!stream) return failure(folder_ / name, "cannot write", last_system_error());
   names_.push_back(name);
   return {};
 }
@@ -64,7 +67,7 @@ Result<void> OutputFolder::commit(const std::function<bool(const std::string& na
   for (const auto& path : stale) fs::remove(path, problem);
   for (const auto& name : names_) {
     fs::rename(hidden_ / name, folder_ / name, problem);
-    if (problem) return failure(folder_ / name, "cannot write", problem.message());
+    if (problem) return failure(folder_ / name, "cannot write", problem);
   }
   return {};
 }

@@ -4,8 +4,6 @@
 #include <cstdio>
 #include <fstream>
 #include <memory>
-#include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 

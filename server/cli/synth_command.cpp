@@ -1,7 +1,5 @@
-#include <charconv>
 #include <cstdio>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "engine/volume/formats/segy_write.h"

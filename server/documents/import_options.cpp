@@ -1,5 +1,6 @@
 #include "server/documents/import_options.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>

@@ -14,7 +14,8 @@ enum class ErrorCode {
   unsupported,       ///< understood, but not something we do
   not_found,
   already_exists,
-  limit_exceeded,  ///< too big for a stated limit, or no space left
+  limit_exceeded,  ///< too big for a stated limit
+  no_space,        ///< the disk or store is full; the same request may succeed later
   cancelled,
   deadline_exceeded,
   unavailable,
@@ -36,6 +37,8 @@ constexpr const char* name_of(ErrorCode code) {
       return "already_exists";
     case ErrorCode::limit_exceeded:
       return "limit_exceeded";
+    case ErrorCode::no_space:
+      return "no_space";
     case ErrorCode::cancelled:
       return "cancelled";
     case ErrorCode::deadline_exceeded:

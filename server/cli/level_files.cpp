@@ -1,7 +1,7 @@
 #include "server/cli/level_files.h"
 
 #include <algorithm>
-#include <regex>
+#include <optional>
 
 #include "engine/codec/obj.h"
 #include "engine/codec/ply.h"
@@ -39,6 +39,15 @@ Result<void> write_exports(OutputFolder& folder, const IndexedMesh& mesh, std::s
   return {};
 }
 
+/// What follows the prefix and a number in the text; nullopt when it does not begin so.
+std::optional<std::string_view> without_number(std::string_view text, std::string_view prefix) {
+  if (!text.starts_with(prefix)) return std::nullopt;
+  text.remove_prefix(prefix.size());
+  const auto digits = std::min(text.find_first_not_of("0123456789"), text.size());
+  if (digits == 0) return std::nullopt;
+  return text.substr(digits);
+}
+
 }  // namespace
 
 Result<FileFormats> parse_file_formats(std::string_view text) {
@@ -66,8 +75,11 @@ ManifestUrls file_urls() {
 }
 
 bool is_result_file(const std::string& name) {
-  static const std::regex kPattern(R"(manifest\.json|lod\d+(\.\d+)?\.drc|lod\d+\.(ply|obj))");
-  return std::regex_match(name, kPattern);
+  if (name == "manifest.json") return true;
+  const auto after_level = without_number(name, "lod");
+  if (!after_level) return false;
+  if (*after_level == ".drc" || *after_level == ".ply" || *after_level == ".obj") return true;
+  return without_number(*after_level, ".") == ".drc";
 }
 
 Result<void> write_result(OutputFolder& folder, const VolumeDescription& volume, const ReconstructOptions& options,

@@ -1,0 +1,249 @@
+import { GeosisApi } from '../core/api.js';
+import { describe, idle } from '../core/extraction_state.js';
+import { formatCount, formatShare } from '../core/format.js';
+import { Histogram } from '../core/histogram.js';
+import { debounced, Latest } from '../core/latest.js';
+import { displayTransform, extentOf, suggestedExaggeration } from '../core/placement.js';
+import { parseEnd, rangeFromText, rangeMistake, rangeToText } from '../core/range.js';
+import { PartDecoder } from '../decode/decoder.js';
+import { LevelView } from '../three/level_view.js';
+import { Stage } from '../three/stage.js';
+import { AxisLabels, SurveyBox } from '../three/survey_box.js';
+import { HistogramView } from './histogram_view.js';
+import { showLevels } from './levels_table.js';
+import { Reconstruction } from './reconstruction.js';
+import { uploadFile } from './upload.js';
+
+const HISTOGRAM_BINS = 256;
+const DEBOUNCE_MS = 250;
+
+const element = (id) => document.getElementById(id);
+const api = new GeosisApi();
+const stage = new Stage(element('view'));
+const level = new LevelView();
+const box = new SurveyBox();
+const labels = new AxisLabels(element('labels'));
+stage.world.add(level, box);
+stage.afterDraw((camera, width, height) => labels.follow(camera, stage.world, width, height));
+
+/** The volume on the screen: its document, its way to the display and its histogram. */
+let volume = null;
+let display = null;
+let histogram = null;
+let range = { low: null, high: null };
+const opening = new Latest();
+
+const histogramView = new HistogramView(element('histogram'), {
+  onMove: (moved) => showRange(moved),
+  onRelease: (released) => {
+    showRange(released);
+    reconstructSoon();
+  },
+});
+
+const decoder = new PartDecoder(new Worker('decode_worker.js'));
+const reconstruction = new Reconstruction(api, decoder, {
+  onState: showState,
+  onLevel(parts) {
+    level.replace(parts);
+    stage.draw();
+  },
+});
+const reconstructSoon = debounced(reconstruct, DEBOUNCE_MS);
+
+function reconstruct() {
+  if (!volume || rangeMistake(range)) return;
+  rememberInAddress();
+  reconstruction.start(volume.id, range, display);
+}
+
+function showState(state) {
+  document.body.dataset.phase = state.phase;
+  element('status').textContent = describe(state);
+  element('status').classList.toggle('problem', state.phase === 'failed');
+  element('progress').value = state.progress;
+  showLevels(element('levels').tBodies[0], state);
+  if (state.phase === 'idle' || state.manifest?.empty) {
+    level.replace([]);
+    stage.draw();
+  }
+}
+
+function showRange(changed) {
+  range = changed;
+  element('low').value = range.low ?? '';
+  element('high').value = range.high ?? '';
+  histogramView.range = range;
+  noteRange();
+}
+
+function noteRange() {
+  const mistake = rangeMistake(range);
+  element('range-note').textContent = mistake || (histogram ? `${formatShare(histogram.share(range))} of the samples` : '');
+  element('reconstruct').disabled = !volume || mistake !== '';
+}
+
+function rememberInAddress() {
+  const address = new URL(location.href);
+  address.searchParams.set('volume', volume.id);
+  address.searchParams.set('range', rangeToText(range));
+  history.replaceState(null, '', address);
+}
+
+// ---- surveys
+
+async function listSurveys(chosen) {
+  const volumes = await api.volumes();
+  const options = volumes.map(({ id, name }) => new Option(name || id.slice(0, 12), id, false, id === chosen));
+  const none = new Option(volumes.length > 0 ? 'Choose a survey' : 'No survey yet', '', false, !chosen);
+  element('survey').replaceChildren(none, ...options);
+  element('survey').disabled = volumes.length === 0;
+  return volumes;
+}
+
+/** Shows a volume and, with a range, reconstructs its body at once. */
+async function openSurvey(id, wantedRange) {
+  reconstruction.stop();
+  showSurveyProblem('');
+  await opening.run(async (signal) => {
+    const [document, counts] = await Promise.all([api.volume(id, signal), api.histogram(id, HISTOGRAM_BINS, signal)]);
+    placeVolume(document);
+    histogram = new Histogram(counts);
+    histogramView.show(histogram);
+    showRange(wantedRange ?? histogram.brightest());
+    reconstruct();
+  });
+}
+
+function placeVolume(document_) {
+  volume = document_;
+  display = displayTransform(volume.geometry.transform, volume.dims);
+  box.place(volume.dims, display);
+  labels.place(volume, display);
+  exaggerate(suggestedExaggeration(extentOf(display, volume.dims)));
+  frame();
+  const [inlines, crosslines, samples] = volume.dims.map(formatCount);
+  const holes = volume.missing.traces > 0 ? `, ${formatCount(volume.missing.traces)} traces missing` : '';
+  element('survey-line').textContent = `${inlines} inlines × ${crosslines} crosslines × ${samples} samples${holes}`;
+  document.title = `${volume.name || 'Survey'} – Geosis`;
+}
+
+function frame() {
+  const extent = extentOf(display, volume.dims);
+  stage.frame({ ...extent, vertical: extent.vertical * stage.world.scale.y });
+}
+
+function exaggerate(factor) {
+  stage.world.scale.y = factor;
+  element('exaggeration').value = factor;
+  element('exaggeration-value').textContent = `× ${factor}`;
+  stage.draw();
+}
+
+function showSurveyProblem(text) {
+  element('survey-problem').textContent = text;
+  element('survey-problem').hidden = text === '';
+}
+
+async function upload(file) {
+  const bar = element('upload-progress');
+  const text = element('upload-text');
+  const before = [...text.childNodes];
+  showSurveyProblem('');
+  bar.hidden = false;
+  try {
+    const stored = await uploadFile(api.uploadUrl(file.name), file, (fraction) => {
+      bar.value = fraction;
+      text.textContent = fraction < 1 ? `Sending ${file.name} …` : `Reading ${file.name} …`;
+    });
+    await listSurveys(stored.id);
+    await openSurvey(stored.id);
+  } catch (error) {
+    showSurveyProblem(error.message);
+  } finally {
+    bar.hidden = true;
+    text.replaceChildren(...before);
+  }
+}
+
+// ---- the page
+
+function listenToForm() {
+  element('survey').addEventListener('change', ({ target }) => target.value && withProblems(openSurvey(target.value)));
+  element('file').addEventListener('change', ({ target }) => {
+    if (target.files.length > 0) upload(target.files[0]);
+    target.value = '';
+  });
+  for (const end of ['low', 'high']) {
+    element(end).addEventListener('input', ({ target }) => {
+      range = { ...range, [end]: parseEnd(target.value) };
+      noteRange();
+      if (!rangeMistake(range)) histogramView.range = range;
+    });
+  }
+  element('range').addEventListener('submit', (event) => {
+    event.preventDefault();
+    reconstruct();
+  });
+}
+
+function listenToTools() {
+  element('exaggeration').addEventListener('input', ({ target }) => exaggerate(Number(target.value)));
+  element('wireframe').addEventListener('change', ({ target }) => {
+    level.wireframe = target.checked;
+    stage.draw();
+  });
+  element('reset').addEventListener('click', () => (volume ? frame() : stage.resetView()));
+}
+
+function listenToDrops() {
+  const dropping = (on) => document.body.classList.toggle('dropping', on);
+  addEventListener('dragover', (event) => {
+    event.preventDefault();
+    dropping(true);
+  });
+  addEventListener('dragleave', (event) => event.relatedTarget ?? dropping(false));
+  addEventListener('drop', (event) => {
+    event.preventDefault();
+    dropping(false);
+    if (event.dataTransfer.files.length > 0) upload(event.dataTransfer.files[0]);
+  });
+}
+
+function followColours() {
+  const dark = matchMedia('(prefers-color-scheme: dark)');
+  const apply = () => {
+    const style = getComputedStyle(document.documentElement);
+    const color = (name) => style.getPropertyValue(name).trim();
+    stage.background = color('--sky');
+    level.color = color('--body');
+    box.color = color('--quiet');
+    stage.draw();
+  };
+  dark.addEventListener('change', apply);
+  apply();
+}
+
+async function withProblems(work) {
+  try {
+    await work;
+  } catch (error) {
+    showSurveyProblem(error.message);
+  }
+}
+
+async function begin() {
+  const address = new URL(location.href).searchParams;
+  const volumes = await listSurveys(address.get('volume'));
+  const first = address.get('volume') ?? volumes[0]?.id;
+  if (!first) return;
+  element('survey').value = first;
+  await openSurvey(first, rangeFromText(address.get('range')));
+}
+
+listenToForm();
+listenToTools();
+listenToDrops();
+followColours();
+showState(idle);
+withProblems(begin());

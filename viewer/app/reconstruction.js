@@ -1,0 +1,81 @@
+import {
+  failed, idle, levelKnown, levelShown, manifestCame, progressed, started,
+} from '../core/extraction_state.js';
+import { Latest } from '../core/latest.js';
+import { LevelAssembly } from '../core/level_assembly.js';
+import { Problem } from '../core/problem.js';
+import { requestOf } from '../core/range.js';
+
+/**
+ * Asks for a body and follows it until its last level is drawn. A new request takes the place of the running one.
+ *
+ * onState(state)  after every change.     onLevel(parts)  a finer level is complete.
+ */
+export class Reconstruction {
+  #api;
+  #decoder;
+  #newest = new Latest();
+  #state = idle;
+  #onState;
+  #onLevel;
+
+  constructor(api, decoder, { onState, onLevel }) {
+    this.#api = api;
+    this.#decoder = decoder;
+    this.#onState = onState;
+    this.#onLevel = onLevel;
+  }
+
+  /** display   index -> display of the volume, 12 numbers. */
+  async start(volume, range, display) {
+    this.#set(started());
+    try {
+      await this.#newest.run((signal) => this.#follow(volume, range, display, signal));
+    } catch (error) {
+      this.#set(failed(this.#state, error instanceof Problem ? error.message : `Something went wrong: ${error.message}`));
+    }
+  }
+
+  /** Forgets what is running and what is shown. */
+  stop() {
+    this.#newest.abort();
+    this.#set(idle);
+  }
+
+  #set(state) {
+    this.#state = state;
+    this.#onState(state);
+  }
+
+  async #follow(volume, range, display, signal) {
+    const { id } = await this.#api.createExtraction(volume, requestOf(range), signal);
+    let isComplete = false;
+    signal.addEventListener('abort', () => isComplete || this.#api.withdraw(id));
+    this.#listen(id, signal);
+    const assembly = new LevelAssembly();
+    for await (const item of this.#api.stream(id, signal)) {
+      if (item.kind === 'manifest') this.#set(manifestCame(this.#state, item.manifest));
+      else await this.#decode(item, display, assembly, signal);
+    }
+    isComplete = true;
+  }
+
+  async #decode(part, display, assembly, signal) {
+    const mesh = await this.#decoder.decode(part.bytes, display);
+    const complete = assembly.add(part, mesh);
+    if (!complete || signal.aborted) return;
+    this.#onLevel(complete.parts);
+    this.#set(levelShown(this.#state, complete.level));
+  }
+
+  /** Numbers and progress come beside the meshes. When this channel fails, the stream still carries everything. */
+  #listen(id, signal) {
+    const events = new EventSource(this.#api.eventsUrl(id));
+    const on = (name, action) => events.addEventListener(name, ({ data }) => signal.aborted || action(JSON.parse(data)));
+    on('progress', (progress) => this.#set(progressed(this.#state, progress)));
+    on('level', (entry) => this.#set(levelKnown(this.#state, entry)));
+    for (const last of ['done', 'failed']) on(last, () => events.close());
+    events.onerror = () => events.close();
+    signal.addEventListener('abort', () => events.close());
+  }
+}

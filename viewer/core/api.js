@@ -1,0 +1,115 @@
+import { MultipartReader, multipartBoundary } from './multipart.js';
+import { Problem, problemFromText } from './problem.js';
+
+/** The calls of the service that the page makes. Failures are thrown as Problem; aborts as AbortError. */
+export class GeosisApi {
+  #base;
+  #fetch;
+
+  /** base   where the service is, without a slash at the end: '' for the page's own server. */
+  constructor(base = '', fetchFunction = globalThis.fetch.bind(globalThis)) {
+    this.#base = base;
+    this.#fetch = fetchFunction;
+  }
+
+  /** Every volume, page by page. */
+  async volumes(signal) {
+    const all = [];
+    let token = '';
+    do {
+      const page = await this.#json(`/v1/volumes?page_size=100${token && `&page_token=${encodeURIComponent(token)}`}`, { signal });
+      all.push(...page.volumes);
+      token = page.next_page_token ?? '';
+    } while (token);
+    return all;
+  }
+
+  volume(id, signal) {
+    return this.#json(`/v1/volumes/${encodeURIComponent(id)}`, { signal });
+  }
+
+  histogram(id, bins, signal) {
+    return this.#json(`/v1/volumes/${encodeURIComponent(id)}/histogram?bins=${bins}`, { signal });
+  }
+
+  /** Asks for an extraction; the answer is its resource, which may be done already. */
+  createExtraction(volume, request, signal) {
+    return this.#json(`/v1/volumes/${encodeURIComponent(volume)}/extractions`, {
+      method: 'POST',
+      headers: { 'Content-Type': 'application/json' },
+      body: JSON.stringify(request),
+      signal,
+    });
+  }
+
+  /** Tells that nobody waits for it here any more. Never fails: it is a courtesy. */
+  async withdraw(extraction) {
+    try {
+      await this.#fetch(this.#url(`/v1/extractions/${encodeURIComponent(extraction)}`), { method: 'DELETE', keepalive: true });
+    } catch {
+      // The server is gone, and the interest with it.
+    }
+  }
+
+  eventsUrl(extraction) {
+    return this.#url(`/v1/extractions/${encodeURIComponent(extraction)}/events`);
+  }
+
+  uploadUrl(name) {
+    return this.#url(`/v1/volumes?format=auto&name=${encodeURIComponent(name)}`);
+  }
+
+  /**
+   * The levels of an extraction as they come, coarsest first, and the manifest last:
+   * {kind: 'part', level, part, count (parts of that level), bytes: Uint8Array} ... {kind: 'manifest', manifest}.
+   */
+  async *stream(extraction, signal) {
+    const answer = await this.#answer(`/v1/extractions/${encodeURIComponent(extraction)}/stream`, { signal });
+    const boundary = multipartBoundary(answer.headers.get('Content-Type'));
+    if (!boundary) throw new Problem({ detail: 'The stream of levels is not multipart.' });
+    const reader = new MultipartReader(boundary);
+    const body = answer.body.getReader();
+    for (;;) {
+      const { value, done } = await body.read();
+      if (done) break;
+      for (const part of reader.push(value)) yield streamItem(part);
+    }
+    if (!reader.finished) throw new Problem({ detail: 'The stream of levels was cut short.', code: 'unavailable' });
+  }
+
+  #url(path) {
+    return this.#base + path;
+  }
+
+  async #json(path, options) {
+    const answer = await this.#answer(path, options);
+    return answer.json();
+  }
+
+  async #answer(path, options) {
+    let answer;
+    try {
+      answer = await this.#fetch(this.#url(path), options);
+    } catch (error) {
+      if (error.name === 'AbortError') throw error;
+      throw new Problem({ detail: 'The server cannot be reached.', code: 'unavailable' });
+    }
+    if (!answer.ok) throw problemFromText(answer.status, await answer.text());
+    return answer;
+  }
+}
+
+function streamItem({ headers, body }) {
+  if (headers.has('x-geosis-level')) {
+    return {
+      kind: 'part',
+      level: Number(headers.get('x-geosis-level')),
+      part: Number(headers.get('x-geosis-part') ?? 0),
+      count: Number(headers.get('x-geosis-parts') ?? 1),
+      bytes: body,
+    };
+  }
+  const document = JSON.parse(new TextDecoder().decode(body));
+  if (/problem\+json/.test(headers.get('content-type') ?? '')) throw new Problem(document);
+  return { kind: 'manifest', manifest: document };
+}

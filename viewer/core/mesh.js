@@ -1,0 +1,47 @@
+/** Meshes as flat arrays: positions (n, 3) float32, triangles (m, 3) uint32, normals (n, 3) float32. */
+
+/** Maps positions by 12 numbers (three rows of a row-major 4 x 4), computed in double. */
+export function transformPositions(positions, rows) {
+  const mapped = new Float32Array(positions.length);
+  for (let at = 0; at < positions.length; at += 3) {
+    const [x, y, z] = [positions[at], positions[at + 1], positions[at + 2]];
+    for (let row = 0; row < 3; ++row) {
+      mapped[at + row] = rows[4 * row] * x + rows[4 * row + 1] * y + rows[4 * row + 2] * z + rows[4 * row + 3];
+    }
+  }
+  return mapped;
+}
+
+/** The triangles seen from the other side. */
+export function reversedTriangles(triangles) {
+  const reversed = triangles.slice();
+  for (let at = 0; at < reversed.length; at += 3) {
+    reversed[at + 1] = triangles[at + 2];
+    reversed[at + 2] = triangles[at + 1];
+  }
+  return reversed;
+}
+
+/** Unit normals of the vertices: the sum of the triangles around each, weighted by area. */
+export function vertexNormals(positions, triangles) {
+  const sums = new Float64Array(positions.length);
+  for (let at = 0; at < triangles.length; at += 3) addTriangle(sums, positions, triangles, at);
+  const normals = new Float32Array(positions.length);
+  for (let at = 0; at < normals.length; at += 3) {
+    const length = Math.hypot(sums[at], sums[at + 1], sums[at + 2]) || 1;
+    for (let axis = 0; axis < 3; ++axis) normals[at + axis] = sums[at + axis] / length;
+  }
+  return normals;
+}
+
+function addTriangle(sums, positions, triangles, at) {
+  const [a, b, c] = [3 * triangles[at], 3 * triangles[at + 1], 3 * triangles[at + 2]];
+  const [ux, uy, uz] = [positions[b] - positions[a], positions[b + 1] - positions[a + 1], positions[b + 2] - positions[a + 2]];
+  const [vx, vy, vz] = [positions[c] - positions[a], positions[c + 1] - positions[a + 1], positions[c + 2] - positions[a + 2]];
+  const [nx, ny, nz] = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+  for (const vertex of [a, b, c]) {
+    sums[vertex] += nx;
+    sums[vertex + 1] += ny;
+    sums[vertex + 2] += nz;
+  }
+}

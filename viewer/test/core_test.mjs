@@ -1,0 +1,169 @@
+import assert from 'node:assert/strict';
+import { describe, it } from 'node:test';
+
+import {
+  describe as sentenceOf, failed, idle, levelKnown, levelShown, manifestCame, progressed, started,
+} from '../core/extraction_state.js';
+import { formatBytes, formatCount, formatDistance, formatShare } from '../core/format.js';
+import { Histogram } from '../core/histogram.js';
+import { debounced, Latest } from '../core/latest.js';
+import { LevelAssembly } from '../core/level_assembly.js';
+import { problemFromText } from '../core/problem.js';
+import { parseEnd, rangeFromText, rangeMistake, rangeToText, roundTo } from '../core/range.js';
+
+describe('LevelAssembly', () => {
+  it('shows each finer level when its last part is here', () => {
+    const assembly = new LevelAssembly();
+    assert.deepEqual(assembly.add({ level: 1, part: 0, count: 1 }, 'coarse'), { level: 1, parts: ['coarse'] });
+    assert.equal(assembly.add({ level: 0, part: 1, count: 2 }, 'right'), null);
+    assert.deepEqual(assembly.add({ level: 0, part: 0, count: 2 }, 'left'), { level: 0, parts: ['left', 'right'] });
+  });
+
+  it('never goes back to a coarser level', () => {
+    const assembly = new LevelAssembly();
+    assembly.add({ level: 0, part: 0, count: 1 }, 'fine');
+    assert.equal(assembly.add({ level: 2, part: 0, count: 1 }, 'coarse'), null);
+  });
+});
+
+describe('Latest', () => {
+  it('aborts the running task when a newer one starts, silently', async () => {
+    const latest = new Latest();
+    let aborted;
+    const first = latest.run((signal) => new Promise((_, reject) => {
+      aborted = signal;
+      signal.addEventListener('abort', () => reject(signal.reason));
+    }));
+    assert.equal(await latest.run(async () => 'second'), 'second');
+    assert.equal(await first, undefined);
+    assert.ok(aborted.aborted);
+  });
+
+  it('lets other failures through', async () => {
+    await assert.rejects(new Latest().run(async () => { throw new Error('broken'); }), /broken/);
+  });
+});
+
+describe('debounced', () => {
+  it('acts once, with the last arguments', () => {
+    const waiting = new Map();
+    const timers = { setTimeout: (action, ms) => waiting.set(ms, action) && ms, clearTimeout: (id) => waiting.delete(id) };
+    const calls = [];
+    const act = debounced((value) => calls.push(value), 250, timers);
+    act(1);
+    act(2);
+    for (const action of waiting.values()) action();
+    assert.deepEqual(calls, [2]);
+  });
+});
+
+describe('range', () => {
+  it('takes an empty field, inf and the sign for an open end', () => {
+    for (const text of ['', ' ', 'inf', '-inf', '∞', '-Infinity']) assert.equal(parseEnd(text), null, text);
+  });
+
+  it('takes numbers with point or comma, and refuses words', () => {
+    assert.equal(parseEnd(' -1e3 '), -1000);
+    assert.equal(parseEnd('0,5'), 0.5);
+    assert.equal(parseEnd('half'), undefined);
+  });
+
+  it('says what is wrong', () => {
+    assert.equal(rangeMistake({ low: 1, high: 1 }), '');
+    assert.match(rangeMistake({ low: 2, high: 1 }), /above/);
+    assert.match(rangeMistake({ low: undefined, high: 1 }), /number/);
+  });
+
+  it('comes back from the page address', () => {
+    for (const range of [{ low: 0.5, high: null }, { low: null, high: -2 }, { low: null, high: null }]) {
+      assert.deepEqual(rangeFromText(rangeToText(range)), range);
+    }
+    assert.equal(rangeFromText('3,1'), null);
+    assert.equal(rangeFromText(null), null);
+  });
+
+  it('rounds to the digits of a step', () => {
+    assert.equal(roundTo(0.123456, 0.005), 0.1235);
+    assert.equal(roundTo(1234.56, 100), 1235);
+  });
+});
+
+describe('Histogram', () => {
+  const histogram = new Histogram({ edges: [0, 1, 2, 3, 4], counts: [96, 2, 1, 1] });
+
+  it('keeps open ends at the outside', () => {
+    assert.equal(histogram.fractionOf(null, 1), 1);
+    assert.equal(histogram.valueAt(1.2), null);
+    assert.equal(histogram.valueAt(0.5), 2);
+    assert.equal(histogram.fractionOf(3, 0), 0.75);
+  });
+
+  it('counts the share of the samples, bins in proportion', () => {
+    assert.equal(histogram.share({ low: 2, high: null }), 0.02);
+    assert.equal(histogram.share({ low: null, high: 0.5 }), 0.48);
+  });
+
+  it('begins with the brightest samples', () => {
+    assert.deepEqual(histogram.brightest(0.02), { low: 2, high: null });
+  });
+
+  it('has a place for a survey of one value', () => {
+    const flat = new Histogram({ edges: [5, 5], counts: [7] });
+    assert.equal(flat.fractionOf(5, 0), 0.5);
+    assert.equal(flat.share({ low: 5, high: 5 }), 1);
+  });
+});
+
+describe('extraction state', () => {
+  const entry = (level) => ({ level, components: 1, genus: 2, manifold: true });
+
+  it('keeps levels coarsest first, the newest entry of each', () => {
+    let state = levelKnown(levelKnown(started(), entry(1)), entry(2));
+    state = levelKnown(state, { ...entry(1), genus: 3 });
+    assert.deepEqual(state.levels.map(({ level, genus }) => [level, genus]), [[2, 2], [1, 3]]);
+  });
+
+  it('ends with the manifest, whatever comes late', () => {
+    const done = manifestCame(started(), { levels: [entry(0), entry(1)], empty: false });
+    assert.equal(progressed(done, { stage: 'encode', progress: 0.5 }), done);
+    assert.equal(levelKnown(done, entry(5)), done);
+    assert.equal(sentenceOf(levelShown(done, 0)), 'Done: 1 piece, 2 tunnels.');
+  });
+
+  it('tells an empty range, a failure and the beginning', () => {
+    assert.match(sentenceOf(manifestCame(started(), { levels: [], empty: true })), /Nothing/);
+    assert.equal(sentenceOf(failed(started(), 'no space')), 'no space');
+    assert.match(sentenceOf(idle), /Choose/);
+  });
+
+  it('keeps the fraction in bounds', () => {
+    assert.equal(progressed(started(), { stage: 'load', progress: 7 }).progress, 1);
+  });
+});
+
+describe('problemFromText', () => {
+  it('says the detail and the ways to read a refused survey', () => {
+    const problem = problemFromText(422, JSON.stringify({
+      detail: 'no grid', code: 'malformed_input', candidates: [{ dims: [2, 3, 4], inline_byte: 9, crossline_byte: 21 }],
+    }));
+    assert.equal(problem.message, 'no grid It could be read as 2 × 3 × 4 (inline at byte 9, crossline at byte 21).');
+    assert.equal(problem.status, 422);
+  });
+
+  it('survives what is not a problem document', () => {
+    assert.match(problemFromText(502, '<html>').message, /502/);
+    assert.match(problemFromText(500, 'null').message, /500/);
+  });
+});
+
+describe('format', () => {
+  it('writes numbers for people', () => {
+    assert.equal(formatCount(31970), '31\u202f970');
+    assert.equal(formatBytes(999), '999 B');
+    assert.equal(formatBytes(41030), '41.0 kB');
+    assert.equal(formatDistance(null), '…');
+    assert.equal(formatDistance(0.0279), '0.028');
+    assert.equal(formatShare(0.0312), '3.1 %');
+    assert.equal(formatShare(1e-6), 'under 0.01 %');
+  });
+});

@@ -1,0 +1,112 @@
+import {
+  AmbientLight, Color, DirectionalLight, Group, HemisphereLight, PerspectiveCamera, Scene, Spherical, Vector3, WebGLRenderer,
+} from 'three';
+import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+
+const FIELD_OF_VIEW = 38;
+
+/** Canvas, camera and light. Draws when something changed, never otherwise. */
+export class Stage {
+  /** Everything of the survey; its y scale is the vertical exaggeration. */
+  world = new Group();
+  #scene = new Scene();
+  #camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 1, 1e6);
+  #renderer;
+  #controls;
+  #radius = 1;
+  #scheduled = false;
+  #afterDraw = [];
+
+  constructor(canvas) {
+    this.#renderer = new WebGLRenderer({ canvas, antialias: true });
+    this.#renderer.setPixelRatio(Math.min(2, globalThis.devicePixelRatio));
+    this.#scene.add(this.world, this.#camera);
+    this.#addLights();
+    this.#controls = new OrbitControls(this.#camera, canvas);
+    this.#controls.addEventListener('change', () => this.draw());
+    canvas.addEventListener('keydown', (event) => this.#onKey(event));
+    new ResizeObserver(() => this.#resize()).observe(canvas.parentElement);
+  }
+
+  set background(color) {
+    this.#scene.background = new Color(color);
+    this.draw();
+  }
+
+  get camera() {
+    return this.#camera;
+  }
+
+  /** Calls action(camera, width, height) after each frame. */
+  afterDraw(action) {
+    this.#afterDraw.push(action);
+  }
+
+  /** Looks at a box of these extents around the origin from south-west, from above. */
+  frame({ horizontal, vertical }) {
+    this.#radius = 0.5 * Math.hypot(horizontal, horizontal, vertical);
+    this.resetView();
+  }
+
+  resetView() {
+    const distance = (0.78 * this.#radius) / Math.sin((FIELD_OF_VIEW * Math.PI) / 360) / Math.min(1, 1.15 * this.#camera.aspect);
+    this.#camera.near = distance / 200;
+    this.#camera.far = distance * 20;
+    this.#camera.position.set(-0.52, 0.62, 0.78).setLength(distance);
+    this.#camera.updateProjectionMatrix();
+    this.#controls.target.set(0, 0, 0);
+    this.#controls.update();
+    this.draw();
+  }
+
+  draw() {
+    if (this.#scheduled) return;
+    this.#scheduled = true;
+    requestAnimationFrame(() => {
+      this.#scheduled = false;
+      this.#renderer.render(this.#scene, this.#camera);
+      const { clientWidth, clientHeight } = this.#renderer.domElement;
+      for (const action of this.#afterDraw) action(this.#camera, clientWidth, clientHeight);
+    });
+  }
+
+  /** Sky and ground light for the slopes, and a lamp that goes with the eye for the rest. */
+  #addLights() {
+    const lamp = new DirectionalLight(0xffffff, 1.9);
+    lamp.position.set(-0.6, 0.8, 0.6);
+    this.#camera.add(lamp);
+    this.#scene.add(new HemisphereLight(0xf4f7ff, 0x8a7a66, 1.1), new AmbientLight(0xffffff, 0.15));
+  }
+
+  #resize() {
+    const { clientWidth, clientHeight } = this.#renderer.domElement.parentElement;
+    if (clientWidth === 0 || clientHeight === 0) return;
+    this.#renderer.setSize(clientWidth, clientHeight, false);
+    this.#camera.aspect = clientWidth / clientHeight;
+    this.#camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  /** Arrows turn, + and - zoom, Home goes back. */
+  #onKey(event) {
+    const turns = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1] };
+    const zooms = { '+': 0.9, '=': 0.9, '-': 1 / 0.9 };
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (turns[event.key]) this.#turn(...turns[event.key], 1);
+    else if (zooms[event.key]) this.#turn(0, 0, zooms[event.key]);
+    else if (event.key === 'Home') this.resetView();
+    else return;
+    event.preventDefault();
+  }
+
+  #turn(around, down, zoom) {
+    const offset = new Vector3().subVectors(this.#camera.position, this.#controls.target);
+    const place = new Spherical().setFromVector3(offset);
+    place.theta += around;
+    place.phi += down;
+    place.radius *= zoom;
+    this.#camera.position.setFromSpherical(place.makeSafe()).add(this.#controls.target);
+    this.#controls.update();
+    this.draw();
+  }
+}

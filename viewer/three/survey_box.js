@@ -1,0 +1,54 @@
+import { BufferAttribute, BufferGeometry, LineBasicMaterial, LineSegments, Vector3 } from 'three';
+
+import { axisLabels, BOX_EDGES, cornersOf, toDisplay } from '../core/placement.js';
+
+/** The survey's outline. */
+export class SurveyBox extends LineSegments {
+  constructor() {
+    super(new BufferGeometry(), new LineBasicMaterial({ transparent: true, opacity: 0.55 }));
+  }
+
+  set color(color) {
+    this.material.color.set(color);
+  }
+
+  place(dims, display) {
+    const corners = cornersOf(dims).map((corner) => toDisplay(display, corner));
+    const positions = new Float32Array(BOX_EDGES.flat().flatMap((corner) => corners[corner]));
+    this.geometry.dispose();
+    this.geometry = new BufferGeometry();
+    this.geometry.setAttribute('position', new BufferAttribute(positions, 3));
+  }
+}
+
+/** The axes' names and numbers as text over the canvas, so that they stay sharp and follow the page's colours. */
+export class AxisLabels {
+  #layer;
+  #labels = [];
+
+  /** layer   an element that covers the canvas. */
+  constructor(layer) {
+    this.#layer = layer;
+  }
+
+  place(volume, display) {
+    this.#labels = axisLabels(volume).map(({ text, at, kind }) => {
+      const element = document.createElement('span');
+      element.className = `axis-${kind}`;
+      element.textContent = text;
+      return { element, point: new Vector3(...toDisplay(display, at)) };
+    });
+    this.#layer.replaceChildren(...this.#labels.map(({ element }) => element));
+  }
+
+  /** Puts the texts where their points are. */
+  follow(camera, world, width, height) {
+    for (const { element, point } of this.#labels) {
+      const seen = world.localToWorld(point.clone()).project(camera);
+      const x = ((seen.x + 1) / 2) * width;
+      const y = ((1 - seen.y) / 2) * height;
+      element.style.transform = `translate(-50%, -50%) translate(${x.toFixed(1)}px, ${y.toFixed(1)}px)`;
+      element.hidden = seen.z > 1;
+    }
+  }
+}

@@ -2,12 +2,14 @@
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <functional>
-#include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "engine/base/progress.h"
 #include "engine/base/result.h"
@@ -32,8 +34,10 @@ struct JobStatus {
 /// Knows nothing of what is computed. Every member may be called from any thread.
 class Job final : public Progress {
  public:
-  void report(const char* stage, double fraction) override;  ///< rings at most every 100 ms per stage change or 1 %
+  /// Rings at every new stage, else at most every 100 ms and only when 1 % was added.
+  void report(const char* stage, double fraction) override;
   bool cancelled() const override { return cancel_requested_.load(std::memory_order_relaxed); }
+  /// A queued job is cancelled at once; a running one learns of it by asking cancelled().
   void request_cancel();
 
   JobStatus status() const;
@@ -44,17 +48,22 @@ class Job final : public Progress {
   /// Rings all bells; for whoever adds news of his own to a job.
   void ring();
   /// Calls bell() after every change, from whatever thread made it, until the subscription is destroyed; never while
-  /// holding the job's lock. When the destructor returns, bell() is not running and will not be called.
-  class Subscription {
+  /// holding the job's lock, and never twice at a time. When the destructor returns, bell() is not running and will not
+  /// be called; it may run inside bell() itself. A bell must be quick, must not throw, change its job or end another
+  /// subscription. The job may be gone before its subscriptions.
+  class [[nodiscard]] Subscription {
    public:
     Subscription() = default;
-    Subscription(Subscription&&) noexcept;
-    Subscription& operator=(Subscription&&) noexcept;
-    ~Subscription();
+    Subscription(Subscription&&) noexcept = default;
+    Subscription& operator=(Subscription&& other) noexcept;
+    ~Subscription() { end(); }
 
    private:
     friend class Job;
     struct Entry;
+    explicit Subscription(std::shared_ptr<Entry> entry) : entry_(std::move(entry)) {}
+    void end();
+
     std::shared_ptr<Entry> entry_;
   };
   Subscription subscribe(std::function<void()> bell);
@@ -62,7 +71,19 @@ class Job final : public Progress {
   bool wait_for(std::chrono::milliseconds time) const;
 
  private:
-  // state behind one mutex, a condition variable, the list of bells
+  using Clock = std::chrono::steady_clock;
+
+  template <class Apply>
+  void change(Apply apply);
+  void ring_bells();
+
+  std::atomic<bool> cancel_requested_{false};
+  mutable std::mutex mutex_;  // guards all below
+  mutable std::condition_variable became_final_;
+  JobStatus status_;
+  double rung_progress_ = 0;  // of the stage, when the bells last rang
+  Clock::time_point rung_at_{};
+  std::vector<std::weak_ptr<Subscription::Entry>> bells_;
 };
 
 }  // namespace geosis::server

@@ -1,15 +1,18 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "engine/base/result.h"
 #include "server/app/byte_stream.h"
+#include "server/app/compute.h"
+#include "server/app/extraction.h"
 #include "server/app/volumes.h"
-#include "server/documents/json_text.h"
 #include "server/jobs/job_queue.h"
 #include "server/store/blob_store.h"
 
@@ -17,48 +20,80 @@ namespace geosis::server {
 
 enum class LevelFormat { drc, ply, obj };
 
-/// Bytes of one level or part, with what a transport says about them.
+/// One file of a result, with what a transport says about it.
 struct LevelFile {
-  std::string sha256;  ///< hexadecimal; the strong validator
+  std::string sha256;  ///< hexadecimal: the strong validator
   std::uint64_t bytes = 0;
   std::unique_ptr<ByteStream> stream;
-  std::string transform;  ///< 16 numbers, comma separated, for drc
+  std::string transform;  ///< 16 numbers, for drc
 };
 
-/// Use cases around extractions, without any transport.
+/// Use cases around extractions, without any transport. Any thread may call any member.
 ///
-/// Stored under <tenant>/extractions/<eid>/: request.json (before anything is acknowledged), parts/<level>.<part>.drc,
-/// levels/<level>.<format> (whole files, made on first request), manifest.json (last: done), cancelled.json.
+/// Stored under <tenant>/extractions/<id>/: `request.json` (before anything is acknowledged),
+/// `parts/<level>.<part>.drc`, `levels/<level>.<format>` with a description beside it (whole files, made on first
+/// request), `cancelled.json`, and `manifest.json`, written last: an extraction is done when its manifest is there.
+/// <tenant>/volumes/<volume>/results/<id> tells what was derived from a volume.
 class Extractions {
  public:
-  Extractions(BlobStore& store, Volumes& volumes, JobQueue& queue, std::string tenant, int threads);
+  /// threads   that one extraction may use.
+  Extractions(BlobStore& store, Volumes& volumes, JobQueue& queue, std::string tenant, int threads,
+              ReconstructFunction reconstruct = geosis::reconstruct);
 
-  struct Created {
-    std::string id;
-    bool is_done = false;  ///< it was there already
-  };
-  /// Records the request durably and starts it unless it is done or running. Adds the caller's interest.
-  Result<Created> create(const std::string& volume, const Json& request, Priority priority);
-  /// Triangles, bytes, memory and seconds from the index alone.
-  Result<Json> estimate(const std::string& volume, const Json& request);
-  /// Waits until it is final, at most so long.
-  void wait(const std::string& id, std::chrono::milliseconds time);
-  /// The resource: state, stage, progress, request, levels so far, error, timings, links.
-  Result<Json> resource(const std::string& id);
-  Result<Json> manifest(const std::string& id);  ///< unavailable-with-state while it is not done: see is_done
-  Result<Json> bodies(const std::string& id);
+  /// Records the request durably and starts it, unless it is done or running; equal requests are computed once. A
+  /// failed or cancelled one starts again. Adds one interest.
+  ///
+  /// errors   not_found: the volume; invalid_argument, unsupported: the request; unavailable: the queue is full.
+  Result<std::shared_ptr<Extraction>> create(const std::string& volume, const Json& request, Priority priority);
+  /// The extraction, from memory or from the store; one that the store only knows as a request is computed.
+  ///
+  /// errors   not_found.  unavailable: recorded by another result version and not done.
+  Result<std::shared_ptr<Extraction>> find(const std::string& id);
+  /// One shot: the file is imported, reconstructed and forgotten. Parts live as long as the extraction object.
+  Result<std::shared_ptr<Extraction>> create_transient(const ByteSource& file, const UploadOptions& upload,
+                                                       const Json& request, Progress& progress,
+                                                       std::vector<GridCandidate>& candidates);
+
+  /// Takes one interest away; without any left the work stops within 200 ms, durably.
+  Result<void> withdraw(const std::string& id);
+  /// Removes a stored result.
+  Result<void> purge(const std::string& id);
+  /// Removes all that was derived from a volume.
+  Result<void> purge_results_of(const std::string& volume);
+
+  /// Level k, whole, in one file. errors: not_found; already_exists never; unavailable: not done yet.
   Result<LevelFile> level(const std::string& id, int level, LevelFormat format);
+  /// One encoded part; may be read as soon as its level is ready.
   Result<LevelFile> part(const std::string& id, int level, int part);
 
-  /// Server-sent events from `after` on.
-  Result<std::unique_ptr<ByteStream>> events(const std::string& id, std::uint64_t after);
-  /// multipart/mixed: parts coarsest level first, the manifest last. The stream's death before its end withdraws the
-  /// caller's interest when `withdraws` is set.
-  Result<std::unique_ptr<ByteStream>> stream(const std::string& id, const std::string& boundary, bool withdraws);
+ private:
+  BlobKey key(const std::string& id, const std::string& name) const {
+    return tenant_ + "/extractions/" + id + "/" + name;
+  }
+  BlobKey result_key(const std::string& volume, const std::string& id) const {
+    return tenant_ + "/volumes/" + volume + "/results/" + id;
+  }
+  Result<Json> read_document(const std::string& id, const char* name) const;
+  Result<void> write_document(const BlobKey& key, const Json& document);
+  PartReader part_reader(const std::string& id) const;
 
-  /// Takes one interest away; without any left the job is cancelled, durably.
-  Result<void> withdraw(const std::string& id);
-  Result<void> purge(const std::string& id);
+  struct Entry;
+  std::shared_ptr<Entry> entry_of(const std::string& id);
+  Result<std::shared_ptr<Extraction>> load(Entry& entry, const std::string& id);
+  Result<std::shared_ptr<Extraction>> record_and_start(Entry& entry, Extraction::Identity identity, Priority priority);
+  Result<void> start(std::shared_ptr<Extraction> extraction, Priority priority);
+  Result<void> run(Extraction& extraction, Job& job);
+  Result<LevelFile> whole_level(const std::string& id, int level, LevelFormat format, const Json& manifest);
+  Result<void> make_level_file(const std::string& id, int level, LevelFormat format, const Json& manifest);
+
+  BlobStore& store_;
+  Volumes& volumes_;
+  JobQueue& queue_;
+  const std::string tenant_;
+  const int threads_;
+  const ReconstructFunction reconstruct_;
+  std::mutex mutex_;
+  std::map<std::string, std::shared_ptr<Entry>> entries_;  ///< recently used, by id
 };
 
 }  // namespace geosis::server

@@ -1,80 +1,86 @@
 #pragma once
 
-#include <functional>
-#include <map>
+#include <cstdint>
+#include <list>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/analysis/histogram.h"
 #include "engine/base/result.h"
 #include "engine/volume/bricks.h"
 #include "engine/volume/formats/import.h"
-#include "server/app/byte_stream.h"
+#include "engine/volume/slice.h"
 #include "server/documents/json_text.h"
+#include "server/documents/volume_document.h"
 #include "server/store/blob_store.h"
 
 namespace geosis::server {
 
-/// A volume that is stored and mapped: what extraction, slices and histogram read.
+/// A volume in the store, mapped: what extraction, slices and histogram read.
 struct StoredVolume {
-  std::string id;
-  VolumeDescription description;
-  std::shared_ptr<const BrickedVolume> samples;
+  VolumeSummary summary;
+  std::unique_ptr<const BrickedVolume> samples;
 };
 
 struct UploadOptions {
   ImportOptions import;
-  std::string name;
+  std::string name;                   ///< what people call it; may be empty
+  std::optional<std::string> digest;  ///< SHA-256 of the file as the client knows it, hexadecimal
 };
 
 struct UploadResult {
-  std::string id;
-  bool is_new = true;
+  bool is_new = true;  ///< false: the same file was here already, read with the same options
   Json document;
 };
 
-enum class SliceAxis { inline_, crossline, sample };
-
-struct Slice {
-  std::int32_t rows = 0, columns = 0;
-  std::vector<float> samples;  ///< (rows, columns); NaN = missing
-};
-
-/// Use cases around volumes, without any transport.
+/// Use cases around volumes, without any transport. Any thread may call any member.
 ///
-/// Stored under <tenant>/volumes/<id>/: bricks (the brick file), sidecar.json, and volume.json, written last: a volume
-/// is there when its volume.json is.
+/// Stored under <tenant>/volumes/<id>/: `bricks` (the brick file), `sidecar.json` (name, crs, created_at) and
+/// `volume.json`, written last and removed first: a volume is there when its volume.json is.
 class Volumes {
  public:
+  /// threads   that imports and histograms may use.
   Volumes(BlobStore& store, std::string tenant, int threads);
 
-  /// A file being received: bytes are spooled into the store's staging and hashed.
-  class Upload {
-   public:
-    virtual ~Upload() = default;
-    virtual Result<void> write(std::span<const std::byte> bytes) = 0;
-    /// Imports what was received. candidates as import_volume fills them.
-    virtual Result<UploadResult> finish(Progress& progress, std::vector<GridCandidate>& candidates) = 0;
-  };
-  /// declared_bytes   from the transport when known: refused early when the disk cannot hold it.
-  /// digest           expected SHA-256 (hexadecimal) of the bytes, if the client sent one.
-  Result<std::unique_ptr<Upload>> begin_upload(const UploadOptions& options,
-                                               std::optional<std::uint64_t> declared_bytes,
-                                               std::optional<std::string> digest);
+  /// Imports a received file. The file itself is not kept.
+  ///
+  /// candidates   filled as import_volume does.
+  /// errors       those of import_volume; invalid_argument: the digest is another; those of the store.
+  Result<UploadResult> add(const ByteSource& file, const UploadOptions& options, Progress& progress,
+                           std::vector<GridCandidate>& candidates);
 
   Result<std::shared_ptr<const StoredVolume>> open(const std::string& id);
+  /// The volume document of the outside contract.
   Result<Json> document(const std::string& id) const;
-  /// {"volumes": [...], "next_page_token": ...}
+  /// {"volumes": [...], "next_page_token": string or null}, in the order of ids.
   Result<Json> list(std::size_t page_size, const std::string& page_token) const;
-  /// JSON merge patch of the sidecar: name, crs.
-  Result<Json> patch(const std::string& id, const Json& changes);
+  /// Changes name and crs of the sidecar; null removes. errors: invalid_argument: another field, not a string.
+  Result<Json> change(const std::string& id, const Json& changes);
+  /// Forgets the volume. What was derived from it is Extractions' to remove.
   Result<void> remove(const std::string& id);
 
-  /// {"edges": [bins + 1], "counts": [bins], "missing": n}
-  Result<Json> histogram(const std::string& id, int bins);
+  Result<Histogram> histogram(const std::string& id, int bins, Progress& progress);
   Result<Slice> slice(const std::string& id, SliceAxis axis, std::int32_t index);
+
+ private:
+  BlobKey key(const std::string& id, const char* name) const { return tenant_ + "/volumes/" + id + "/" + name; }
+  Result<Json> read_document(const std::string& id, const char* name) const;
+  Result<void> write_document(const std::string& id, const char* name, const Json& document);
+
+  BlobStore& store_;
+  const std::string tenant_;
+  const int threads_;
+  std::mutex mutex_;
+  std::list<std::shared_ptr<const StoredVolume>> recent_;  ///< most recently opened first
 };
+
+/// 64 lower-case hexadecimal digits: what ids look like.
+bool is_id(const std::string& text);
+
+/// The present moment as documents show it: 2026-01-31T12:00:00Z.
+std::string timestamp();
 
 }  // namespace geosis::server

@@ -1,0 +1,75 @@
+#include "server/app/compute.h"
+
+#include <atomic>
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "server/documents/manifest.h"
+
+namespace geosis::server {
+namespace {
+
+ManifestUrls service_urls() {
+  const auto level_path = [](std::size_t level) { return "lods/" + std::to_string(level); };
+  return {.level = [=](std::size_t level, std::size_t) { return std::optional(level_path(level) + ".drc"); },
+          .part = [=](std::size_t level, std::size_t part,
+                      std::size_t) { return level_path(level) + "/parts/" + std::to_string(part) + ".drc"; }};
+}
+
+/// Passes reports on, and stops the work when a part could not be kept.
+class StoppableProgress final : public Progress {
+ public:
+  explicit StoppableProgress(Progress& outer) : outer_(outer) {}
+  void report(const char* stage, double fraction) override { outer_.report(stage, fraction); }
+  bool cancelled() const override { return stopped_ || outer_.cancelled(); }
+  void stop() { stopped_ = true; }
+
+ private:
+  Progress& outer_;
+  std::atomic<bool> stopped_{false};
+};
+
+Result<void> write_parts(const ReconstructedLevel& level, std::size_t number, const PartWriter& write_part) {
+  for (std::size_t p = 0; p < level.encoded.parts.size(); ++p) {
+    auto written = write_part(static_cast<int>(number), static_cast<int>(p), level.encoded.parts[p].bytes);
+    if (!written) return written;
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Json> compute_extraction(Extraction& extraction, const VolumeSummary& volume, const BrickedVolume& samples,
+                                const ReconstructOptions& options, const ReconstructFunction& reconstruct,
+                                const PartWriter& write_part, Progress& progress, ExtractionTimings& timings) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  const ManifestUrls urls = service_urls();
+  StoppableProgress stoppable(progress);
+  std::optional<Error> failed;
+  const LevelSink show_level = [&](std::size_t number, const ReconstructedLevel& level) {
+    if (failed) return;
+    if (auto written = write_parts(level, number, write_part); !written) {
+      failed = written.error();
+      stoppable.stop();
+      return;
+    }
+    if (timings.first_level == 0) timings.first_level = timings.load + seconds();
+    extraction.add_level(early_level_document(level, number, volume, options, urls));
+  };
+
+  StageTimings stages;
+  const auto result = reconstruct(samples, volume.geometry, options, stoppable, &stages, show_level);
+  if (failed) return *std::move(failed);
+  if (!result) return result.error();
+  timings.extract = stages.extract;
+  timings.simplify = stages.simplify;
+  timings.encode = stages.encode;
+  timings.certify = stages.certify;
+  timings.total = timings.load + seconds();
+  return manifest_document(volume, options, *result, urls);
+}
+
+}  // namespace geosis::server

@@ -1,0 +1,368 @@
+#include "server/app/extractions.h"
+
+#include <utility>
+
+#include "engine/base/digest.h"
+#include "server/app/level_export.h"
+#include "server/app/result_streams.h"
+#include "server/documents/ids.h"
+#include "server/documents/request.h"
+
+namespace geosis::server {
+namespace {
+
+constexpr const char* kRequest = "request.json";
+constexpr const char* kManifest = "manifest.json";  // there = it is done
+constexpr const char* kCancelled = "cancelled.json";
+constexpr std::size_t kMostEntries = 512;
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+Error no_such_extraction(const std::string& id) {
+  return {ErrorCode::not_found, "extraction " + id + ": there is no such extraction"};
+}
+
+std::string part_name(int level, int part) {
+  return "parts/" + std::to_string(level) + "." + std::to_string(part) + ".drc";
+}
+
+std::span<const std::byte> bytes_of(const std::string& text) {
+  return std::as_bytes(std::span(text));
+}
+
+bool has_ended_without_result(const Extraction& extraction) {
+  const JobState state = extraction.snapshot().state;
+  return state == JobState::failed || state == JobState::cancelled;
+}
+
+/// The parts of a transient extraction, kept in memory.
+class PartShelf {
+ public:
+  void put(int level, int part, std::span<const std::byte> bytes) {
+    const std::lock_guard lock(mutex_);
+    parts_[{level, part}].assign(bytes.begin(), bytes.end());
+  }
+  Result<std::vector<std::byte>> get(int level, int part) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = parts_.find({level, part});
+    if (found == parts_.end()) return Error{ErrorCode::not_found, part_name(level, part) + ": there is no such part"};
+    return found->second;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::map<std::pair<int, int>, std::vector<std::byte>> parts_;
+};
+
+}  // namespace
+
+/// An id's place in the table. The mutex serialises whoever starts or loads it, so that it happens once.
+struct Extractions::Entry {
+  std::mutex mutex;
+  std::shared_ptr<Extraction> extraction;
+};
+
+Extractions::Extractions(BlobStore& store, Volumes& volumes, JobQueue& queue, std::string tenant, int threads,
+                         ReconstructFunction reconstruct)
+    : store_(store),
+      volumes_(volumes),
+      queue_(queue),
+      tenant_(std::move(tenant)),
+      threads_(threads),
+      reconstruct_(std::move(reconstruct)) {}
+
+Result<Json> Extractions::read_document(const std::string& id, const char* name) const {
+  if (!is_id(id)) return no_such_extraction(id);
+  auto bytes = store_.get(key(id, name));
+  if (!bytes) return bytes.error().code == ErrorCode::not_found ? no_such_extraction(id) : bytes.error();
+  return parse_json({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+}
+
+Result<void> Extractions::write_document(const BlobKey& key, const Json& document) {
+  return store_.put(key, bytes_of(document_text(document)));
+}
+
+PartReader Extractions::part_reader(const std::string& id) const {
+  return [this, id](int level, int part) { return store_.get(key(id, part_name(level, part))); };
+}
+
+std::shared_ptr<Extractions::Entry> Extractions::entry_of(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  if (entries_.size() >= kMostEntries) {
+    std::erase_if(entries_, [](const auto& entry) {
+      const auto& held = entry.second;
+      return held.use_count() == 1 && (!held->extraction || is_final(held->extraction->snapshot().state));
+    });
+  }
+  auto& entry = entries_[id];
+  if (!entry) entry = std::make_shared<Entry>();
+  return entry;
+}
+
+// ---- starting
+
+Result<std::shared_ptr<Extraction>> Extractions::create(const std::string& volume, const Json& request,
+                                                        Priority priority) {
+  const auto stored = volumes_.open(volume);
+  if (!stored) return stored.error();
+  auto options = parse_request(request);
+  if (!options) return std::move(options).error();
+  Json canonical = request_document(*options, (*stored)->summary.shape);
+  const std::string id = extraction_id(volume, canonical, kResultVersion);
+
+  const auto entry = entry_of(id);
+  const std::lock_guard lock(entry->mutex);
+  if (!entry->extraction) {
+    auto loaded = load(*entry, id);
+    if (!loaded && loaded.error().code != ErrorCode::not_found) return loaded;
+  }
+  if (!entry->extraction || has_ended_without_result(*entry->extraction)) {
+    auto started = record_and_start(*entry, {id, volume, timestamp(), std::move(canonical)}, priority);
+    if (!started) return started;
+  }
+  entry->extraction->add_interest();
+  return entry->extraction;
+}
+
+/// The request is durable before anybody is told of it.
+Result<std::shared_ptr<Extraction>> Extractions::record_and_start(Entry& entry, Extraction::Identity identity,
+                                                                  Priority priority) {
+  const std::string id = identity.id;
+  const Json record = {{"id", id},
+                       {"volume", identity.volume},
+                       {"result_version", kResultVersion},
+                       {"created_at", identity.created_at},
+                       {"request", identity.request}};
+  if (auto done = write_document(result_key(identity.volume, id), Json::object()); !done)
+    return std::move(done).error();
+  if (auto done = write_document(key(id, kRequest), record); !done) return std::move(done).error();
+  if (auto done = store_.remove(key(id, kCancelled)); !done && done.error().code != ErrorCode::not_found) {
+    return std::move(done).error();
+  }
+  auto extraction = std::make_shared<Extraction>(std::move(identity), part_reader(id));
+  if (auto started = start(extraction, priority); !started) return std::move(started).error();
+  return entry.extraction = std::move(extraction);
+}
+
+Result<void> Extractions::start(std::shared_ptr<Extraction> extraction, Priority priority) {
+  auto job = queue_.submit(priority, [this, extraction](Job& running) { return run(*extraction, running); });
+  if (!job) return std::move(job).error();
+  extraction->set_job(*std::move(job));
+  return {};
+}
+
+Result<void> Extractions::run(Extraction& extraction, Job& job) {
+  const auto& identity = extraction.identity();
+  ExtractionTimings timings;
+  const auto start = Clock::now();
+  const auto volume = volumes_.open(identity.volume);
+  if (!volume) return volume.error();
+  timings.load = seconds_since(start);
+  auto options = parse_request(identity.request);
+  if (!options) return std::move(options).error();
+  options->threads = threads_;
+  const PartWriter write_part = [&](int level, int part, std::span<const std::byte> bytes) {
+    return store_.put(key(identity.id, part_name(level, part)), bytes);
+  };
+  auto manifest = compute_extraction(extraction, (*volume)->summary, *(*volume)->samples, *options, reconstruct_,
+                                     write_part, job, timings);
+  if (!manifest) return std::move(manifest).error();
+  if (auto done = write_document(key(identity.id, kManifest), *manifest); !done) return done;
+  extraction.complete(*std::move(manifest), timings);
+  return {};
+}
+
+Result<std::shared_ptr<Extraction>> Extractions::create_transient(const ByteSource& file, const UploadOptions& upload,
+                                                                  const Json& request, Progress& progress,
+                                                                  std::vector<GridCandidate>& candidates) {
+  auto options = parse_request(request);
+  if (!options) return std::move(options).error();
+  options->threads = threads_;
+  auto imported = import_volume(file, upload.import, std::nullopt, progress, &candidates);
+  if (!imported) return std::move(imported).error();
+  const auto volume = std::make_shared<const ImportedVolume>(*std::move(imported));
+  const auto shelf = std::make_shared<PartShelf>();
+  const VolumeSummary summary = summarize(volume->description);
+  Json canonical = request_document(*options, summary.shape);
+  const std::string id = extraction_id(summary.id, canonical, kResultVersion);
+  auto extraction =
+      std::make_shared<Extraction>(Extraction::Identity{id, summary.id, timestamp(), std::move(canonical)},
+                                   [shelf](int level, int part) { return shelf->get(level, part); });
+  auto job =
+      queue_.submit(Priority::interactive, [=, this, weak = std::weak_ptr(extraction)](Job& running) -> Result<void> {
+        const auto held = weak.lock();
+        if (!held) return Error{ErrorCode::cancelled, "nobody waits for it any more"};
+        const PartWriter write_part = [&](int level, int part, std::span<const std::byte> bytes) -> Result<void> {
+          shelf->put(level, part, bytes);
+          return {};
+        };
+        ExtractionTimings timings;
+        auto manifest =
+            compute_extraction(*held, summary, *volume->samples, *options, reconstruct_, write_part, running, timings);
+        if (!manifest) return std::move(manifest).error();
+        held->complete(*std::move(manifest), timings);
+        return {};
+      });
+  if (!job) return std::move(job).error();
+  extraction->set_job(*std::move(job));
+  extraction->add_interest();
+  return extraction;
+}
+
+// ---- finding
+
+Result<std::shared_ptr<Extraction>> Extractions::find(const std::string& id) {
+  if (!is_id(id)) return no_such_extraction(id);
+  const auto entry = entry_of(id);
+  const std::lock_guard lock(entry->mutex);
+  if (entry->extraction) return entry->extraction;
+  return load(*entry, id);
+}
+
+/// From the store: done, cancelled, or only asked for, perhaps of a replica that died: then it is computed here.
+Result<std::shared_ptr<Extraction>> Extractions::load(Entry& entry, const std::string& id) {
+  const auto record = read_document(id, kRequest);
+  if (!record) return record.error();
+  auto extraction = std::make_shared<Extraction>(
+      Extraction::Identity{id, record->at("volume").get<std::string>(), record->at("created_at").get<std::string>(),
+                           record->at("request")},
+      part_reader(id));
+  if (auto manifest = read_document(id, kManifest)) {
+    extraction->complete(*std::move(manifest), std::nullopt);
+  } else if (const auto cancelled = store_.exists(key(id, kCancelled)); cancelled && *cancelled) {
+    extraction->set_cancelled();
+  } else if (record->at("result_version").get<int>() != kResultVersion) {
+    return Error{ErrorCode::unavailable, "extraction " + id + ": asked of result version " +
+                                             record->at("result_version").dump() + "; this is version " +
+                                             std::to_string(kResultVersion)};
+  } else if (auto started = start(extraction, Priority::interactive); !started) {
+    return std::move(started).error();
+  } else {
+    extraction->add_interest();
+  }
+  return entry.extraction = std::move(extraction);
+}
+
+// ---- ending
+
+Result<void> Extractions::withdraw(const std::string& id) {
+  const auto extraction = find(id);
+  if (!extraction) return extraction.error();
+  if (!(*extraction)->withdraw_interest()) return {};
+  if (auto done = write_document(key(id, kCancelled), {{"cancelled_at", timestamp()}}); !done) return done;
+  (*extraction)->cancel();
+  return {};
+}
+
+Result<void> Extractions::purge(const std::string& id) {
+  const auto record = read_document(id, kRequest);
+  if (!record) return record.error();
+  const auto entry = entry_of(id);
+  const std::lock_guard lock(entry->mutex);
+  if (entry->extraction) entry->extraction->cancel();
+  entry->extraction.reset();
+  // The manifest first: what is left is then no result any more, whatever happens in between.
+  for (const char* name : {kManifest, kRequest}) {
+    if (auto done = store_.remove(key(id, name)); !done && done.error().code != ErrorCode::not_found) return done;
+  }
+  for (;;) {
+    const auto keys = store_.list(key(id, ""), "", 1000);
+    if (!keys) return keys.error();
+    if (keys->empty()) break;
+    for (const BlobKey& left : *keys) {
+      if (auto done = store_.remove(left); !done && done.error().code != ErrorCode::not_found) return done;
+    }
+  }
+  const auto done = store_.remove(result_key(record->at("volume").get<std::string>(), id));
+  return !done && done.error().code != ErrorCode::not_found ? done : Result<void>{};
+}
+
+Result<void> Extractions::purge_results_of(const std::string& volume) {
+  const auto ids = store_.children(result_key(volume, ""));
+  if (!ids) return ids.error();
+  for (const std::string& id : *ids) {
+    if (auto done = purge(id); !done && done.error().code != ErrorCode::not_found) return done;
+    if (auto done = store_.remove(result_key(volume, id)); !done && done.error().code != ErrorCode::not_found)
+      return done;
+  }
+  return {};
+}
+
+// ---- files
+
+Result<LevelFile> Extractions::part(const std::string& id, int level, int part) {
+  const auto extraction = find(id);
+  if (!extraction) return extraction.error();
+  auto bytes = (*extraction)->read_part(level, part);
+  if (!bytes) {
+    if (bytes.error().code != ErrorCode::not_found) return std::move(bytes).error();
+    return Error{ErrorCode::not_found,
+                 "extraction " + id + ": no part " + std::to_string(part) + " of level " + std::to_string(level)};
+  }
+  LevelFile file{.sha256 = sha256_hex(*bytes), .bytes = bytes->size(), .stream = nullptr, .transform = {}};
+  file.stream = bytes_stream(*std::move(bytes));
+  return file;
+}
+
+Result<LevelFile> Extractions::level(const std::string& id, int level, LevelFormat format) {
+  const auto extraction = find(id);
+  if (!extraction) return extraction.error();
+  const Extraction::Snapshot now = (*extraction)->snapshot();
+  if (!now.manifest) {
+    return Error{ErrorCode::already_exists, "extraction " + id + ": it is " + name_of(now.state) + ", not done"};
+  }
+  const Json& levels = now.manifest->at("levels");
+  if (level < 0 || level >= static_cast<int>(levels.size())) {
+    return Error{ErrorCode::not_found, "extraction " + id + ": no level " + std::to_string(level) + "; it has " +
+                                           std::to_string(levels.size())};
+  }
+  auto file = format == LevelFormat::drc && levels.at(static_cast<std::size_t>(level)).at("parts").size() == 1
+                  ? part(id, level, 0)
+                  : whole_level(id, level, format, *now.manifest);
+  if (file && format == LevelFormat::drc) file->transform = transform_text(now.manifest->at("transform"));
+  return file;
+}
+
+/// The stored whole file; made first if nobody has asked for it yet.
+Result<LevelFile> Extractions::whole_level(const std::string& id, int level, LevelFormat format, const Json& manifest) {
+  const std::string name = level_file_name(level, format);
+  auto description = read_document(id, (name + ".json").c_str());
+  if (!description) {
+    if (description.error().code != ErrorCode::not_found) return std::move(description).error();
+    if (auto made = make_level_file(id, level, format, manifest); !made) return std::move(made).error();
+    description = read_document(id, (name + ".json").c_str());
+    if (!description) return std::move(description).error();
+  }
+  const auto path = store_.local_file(key(id, name));
+  if (!path) return path.error();
+  auto stream = file_stream(*path);
+  if (!stream) return std::move(stream).error();
+  return LevelFile{.sha256 = description->at("sha256").get<std::string>(),
+                   .bytes = description->at("bytes").get<std::uint64_t>(),
+                   .stream = *std::move(stream),
+                   .transform = {}};
+}
+
+/// On a worker, as all that computes; the caller waits. Two at once make the same file twice, which does no harm.
+Result<void> Extractions::make_level_file(const std::string& id, int level, LevelFormat format, const Json& manifest) {
+  auto job = queue_.submit(Priority::interactive, [&](Job& running) -> Result<void> {
+    auto staged = store_.stage();
+    if (!staged) return std::move(staged).error();
+    auto description = export_level((*staged)->path(), manifest, level, format, part_reader(id), threads_, running);
+    if (!description) return std::move(description).error();
+    const std::string name = level_file_name(level, format);
+    if (auto done = store_.commit(*std::move(staged), key(id, name)); !done) return done;
+    return write_document(key(id, name + ".json"), *description);
+  });
+  if (!job) return std::move(job).error();
+  while (!(*job)->wait_for(std::chrono::hours(1))) {
+  }
+  const JobStatus status = (*job)->status();
+  return status.state == JobState::done ? Result<void>{}
+                                        : status.error.value_or(Error{ErrorCode::cancelled, "cancelled"});
+}
+
+}  // namespace geosis::server

@@ -1,0 +1,105 @@
+#include "server/app/level_export.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <vector>
+
+#include "engine/base/digest.h"
+#include "engine/codec/level_codec.h"
+#include "engine/codec/obj.h"
+#include "engine/codec/ply.h"
+#include "engine/volume/geometry.h"
+
+namespace geosis::server {
+namespace {
+
+Error write_failed(const std::filesystem::path& path) {
+  return {ErrorCode::unavailable, "writing " + path.filename().string() + " failed"};
+}
+
+Result<IndexedMesh> read_level(const Json& entry, int level, const PartReader& read_part, int threads) {
+  std::vector<std::vector<std::byte>> parts;
+  for (int p = 0; p < static_cast<int>(entry.at("parts").size()); ++p) {
+    auto bytes = read_part(level, p);
+    if (!bytes) return std::move(bytes).error();
+    parts.push_back(*std::move(bytes));
+  }
+  return decode_level({parts.begin(), parts.end()}, threads);
+}
+
+AffineGeometry geometry_of(const std::array<double, 16>& m) {
+  return AffineGeometry({m[3], m[7], m[11]}, {m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]});
+}
+
+/// Bits that hold every position of the mesh.
+int position_bits_of(const IndexedMesh& mesh) {
+  float longest = 0;
+  for (const Vec3f& p : mesh.positions) longest = std::max({longest, p.x, p.y, p.z});
+  return position_bits_for(static_cast<std::int32_t>(std::ceil(longest)) + 1);
+}
+
+Result<void> write_drc(std::ostream& out, const IndexedMesh& mesh, const std::array<double, 16>& transform) {
+  const EncodeOptions options{.position_bits = position_bits_of(mesh),
+                              .max_part_triangles = std::numeric_limits<std::int32_t>::max(),
+                              .transform = transform};
+  const auto encoded = encode_level(mesh, options);
+  if (!encoded) return encoded.error();
+  const auto& bytes = encoded->parts.front().bytes;
+  out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  return {};
+}
+
+Result<void> write_mesh(std::ostream& out, const IndexedMesh& mesh, LevelFormat format,
+                        const std::array<double, 16>& transform) {
+  const auto map = [geometry = geometry_of(transform)](Vec3d p) { return geometry.map(p); };
+  switch (format) {
+    case LevelFormat::drc:
+      return write_drc(out, mesh, transform);
+    case LevelFormat::ply:
+      return write_ply(out, mesh, map);
+    case LevelFormat::obj:
+      return write_obj(out, mesh, map);
+  }
+  return {};
+}
+
+Result<Json> describe(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::vector<char> piece(1 << 20);
+  Sha256 digest;
+  std::uint64_t bytes = 0;
+  while (file) {
+    file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    const auto count = static_cast<std::size_t>(file.gcount());
+    digest.update(std::as_bytes(std::span(piece.data(), count)));
+    bytes += count;
+  }
+  if (!file.eof()) return write_failed(path);
+  return Json{{"sha256", std::move(digest).hex()}, {"bytes", bytes}};
+}
+
+}  // namespace
+
+std::string level_file_name(int level, LevelFormat format) {
+  const char* const extension = format == LevelFormat::drc ? ".drc" : format == LevelFormat::ply ? ".ply" : ".obj";
+  return "levels/" + std::to_string(level) + extension;
+}
+
+Result<Json> export_level(const std::filesystem::path& path, const Json& manifest, int level, LevelFormat format,
+                          const PartReader& read_part, int threads, Progress& progress) {
+  const auto mesh = read_level(manifest.at("levels").at(static_cast<std::size_t>(level)), level, read_part, threads);
+  if (!mesh) return mesh.error();
+  if (progress.cancelled()) return Error{ErrorCode::cancelled, "the export was cancelled"};
+  {
+    std::ofstream out(path, std::ios::binary | std::ios::trunc);
+    const auto transform = manifest.at("transform").get<std::array<double, 16>>();
+    if (auto written = write_mesh(out, *mesh, format, transform); !written) return std::move(written).error();
+    out.close();
+    if (!out) return write_failed(path);
+  }
+  return describe(path);
+}
+
+}  // namespace geosis::server

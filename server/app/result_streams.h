@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "server/app/byte_stream.h"
+#include "server/app/extraction.h"
+
+namespace geosis::server {
+
+/// Bytes that are there already.
+std::unique_ptr<ByteStream> bytes_stream(std::vector<std::byte> bytes);
+/// A file, read as it is pulled. errors: not_found, unavailable.
+Result<std::unique_ptr<ByteStream>> file_stream(const std::string& path);
+
+/// Server-sent events of an extraction: `progress` as it goes, `level` for each level as it is ready (id 1, 2, ...), at
+/// last `done` with the resource or `failed` with the problem.
+///
+/// after   id of the last event that the reader knows; its levels are not told again.
+std::unique_ptr<ByteStream> event_stream(std::shared_ptr<Extraction> extraction, std::uint64_t after);
+
+/// multipart/mixed: the parts of every level as soon as it is ready, coarsest first, and the manifest last.
+///
+/// abandoned   called when the stream is destroyed before its end: the reader went away.
+std::unique_ptr<ByteStream> level_stream(std::shared_ptr<Extraction> extraction, std::string boundary,
+                                         std::function<void()> abandoned);
+
+/// The 16 numbers of a manifest's or canonical request's transform as header text.
+std::string transform_text(const Json& transform);
+
+}  // namespace geosis::server

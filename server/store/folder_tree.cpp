@@ -45,7 +45,8 @@ Result<void> FolderTree::flush(const fs::path& folder) {
 }
 
 fs::path FolderTree::remove_empty(fs::path folder) {
-  while (folder != root_ && (calls_.rmdir(folder.c_str()) == 0 || errno == ENOENT)) folder = folder.parent_path();
+  while (folder != root_ && (calls_.rmdir(folder.c_str()) == 0 || errno == ENOENT || errno == ENOTDIR))
+    folder = folder.parent_path();
   return folder;
 }
 

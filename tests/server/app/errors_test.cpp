@@ -1,0 +1,38 @@
+#include "server/app/errors.h"
+
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+namespace geosis::server {
+namespace {
+
+constexpr int kCodes = static_cast<int>(ErrorCode::internal) + 1;
+
+TEST(NumbersOf, EachCodeHasTheNumbersOfTheContract) {
+  const std::map<std::string, std::pair<int, int>> expected = {
+      {"invalid_argument", {400, 3}}, {"malformed_input", {422, 3}}, {"unsupported", {422, 12}},
+      {"not_found", {404, 5}},        {"already_exists", {409, 6}},  {"limit_exceeded", {413, 8}},
+      {"no_space", {507, 8}},         {"cancelled", {499, 1}},       {"deadline_exceeded", {504, 4}},
+      {"unavailable", {503, 14}},     {"internal", {500, 13}}};
+  ASSERT_EQ(expected.size(), static_cast<std::size_t>(kCodes));
+  for (int i = 0; i < kCodes; ++i) {
+    const auto code = static_cast<ErrorCode>(i);
+    const auto& numbers = numbers_of(code);
+    EXPECT_EQ(numbers.code, code);
+    ASSERT_TRUE(expected.contains(name_of(code))) << name_of(code);
+    EXPECT_EQ(std::pair(numbers.http_status, numbers.grpc_status), expected.at(name_of(code))) << name_of(code);
+  }
+}
+
+TEST(NumbersOf, TitlesTellTheCodesApart) {
+  std::set<std::string> titles;
+  for (int i = 0; i < kCodes; ++i) titles.insert(numbers_of(static_cast<ErrorCode>(i)).title);
+  EXPECT_EQ(titles.size(), static_cast<std::size_t>(kCodes));
+}
+
+}  // namespace
+}  // namespace geosis::server

@@ -1,5 +1,6 @@
 #include "server/cli/commands.h"
+#include "server/service/serve_command.h"
 
 int main(int argc, char** argv) {
-  return geosis::server::run_command_line(argc, argv);
+  return geosis::server::run_command_line(argc, argv, {geosis::server::add_serve_command});
 }

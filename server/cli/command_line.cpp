@@ -35,12 +35,15 @@ int run(const Command& command) {
 
 }  // namespace
 
-int run_command_line(int argc, const char* const* argv) {
+int run_command_line(int argc, const char* const* argv, std::vector<AddCommand> more) {
   CLI::App app("Geosis: seismic volumes to reservoir bodies", "geosis");
   app.set_version_flag("--version", "geosis " GEOSIS_VERSION);
   app.require_subcommand(1);
+  app.fallthrough();
+  app.set_config("--config", "", "file with names of flags, a section for each command: [serve]");
   std::vector<std::pair<CLI::App*, Command>> commands;
-  for (const auto& add : {add_reconstruct_command, add_info_command, add_synth_command}) {
+  more.insert(more.begin(), {add_reconstruct_command, add_info_command, add_synth_command});
+  for (const AddCommand add : more) {
     Command command = add(app);
     commands.emplace_back(app.get_subcommands({}).back(), std::move(command));
   }

@@ -23,6 +23,12 @@ struct Request {
   std::string body;                   ///< of small bodies, complete
   std::optional<std::uint64_t> content_length;
   std::string request_id;
+
+  /// The header's value, or nothing. name   in lower case.
+  const std::string* header(const std::string& name) const {
+    const auto entry = headers.find(name);
+    return entry == headers.end() ? nullptr : &entry->second;
+  }
 };
 
 /// The body of an upload, pulled by its handler on a thread of its own. errors: malformed_input (framing, cut short),

@@ -1,0 +1,242 @@
+#include "server/http/connection.h"
+
+#include <array>
+#include <cerrno>
+#include <string_view>
+#include <utility>
+
+#include <sys/epoll.h>
+#include <sys/socket.h>
+
+#include "server/http/error_reply.h"
+
+namespace geosis::server::http {
+namespace {
+
+constexpr std::size_t kReceiveBytes = 16 * 1024;
+
+}  // namespace
+
+Connection::Connection(std::uint64_t id, Descriptor socket, std::string peer, ConnectionOwner& owner)
+    : id_(id),
+      socket_(std::move(socket)),
+      peer_(std::move(peer)),
+      owner_(owner),
+      deadline_(Clock::now() + owner.limits().head_deadline),
+      rate_(owner.limits().bytes_per_second, owner.limits().rate_window) {}
+
+std::uint32_t Connection::interest() const {
+  const std::uint32_t departure = is_half_closed_ ? 0U : std::uint32_t{EPOLLRDHUP};
+  switch (state_) {
+    case State::reading_head:
+    case State::reading_body:
+    case State::lingering:
+      return EPOLLIN;
+    case State::handling:
+    case State::waiting:
+      return departure;
+    case State::writing:
+      return EPOLLOUT | departure;
+    case State::uploading:
+    case State::finished:
+      break;
+  }
+  return 0;
+}
+
+void Connection::on_events(std::uint32_t events) {
+  if (events & (EPOLLERR | EPOLLHUP)) return finish();
+  if (events & EPOLLRDHUP) {
+    is_half_closed_ = true;
+    // A small answer is still delivered; nobody is there for what a stream may bring later.
+    if (writer_ && writer_->has_stream()) return finish();
+  }
+  if (events & EPOLLIN) receive();
+  if ((events & EPOLLOUT) && state_ == State::writing) write();
+}
+
+void Connection::on_bell() {
+  if (state_ == State::waiting) write();
+}
+
+void Connection::on_tick() {
+  const auto now = Clock::now();
+  if (state_ == State::writing && !judge_rate()) return finish();
+  const bool has_deadline =
+      state_ == State::reading_head || state_ == State::reading_body || state_ == State::lingering;
+  if (!has_deadline || now < deadline_) return;
+  const bool is_idle = state_ == State::reading_head && in_.empty();
+  if (is_idle || state_ == State::lingering) return finish();
+  refuse({408, "the request did not arrive in time"});
+}
+
+void Connection::on_drain() {
+  if (state_ != State::reading_head) return;
+  receive();  // what is already here is still answered
+  if (state_ == State::reading_head && in_.empty()) finish();
+}
+
+void Connection::interrupt() {
+  ::shutdown(socket_.number(), SHUT_RDWR);
+}
+
+void Connection::receive() {
+  std::array<char, kReceiveBytes> piece;
+  const ssize_t count = ::recv(socket_.number(), piece.data(), piece.size(), MSG_DONTWAIT);
+  if (count < 0 && (errno == EAGAIN || errno == EINTR)) return;
+  if (count <= 0) return finish();
+  if (state_ != State::reading_head && state_ != State::reading_body) return;
+  if (in_.empty() && state_ == State::reading_head) deadline_ = Clock::now() + owner_.limits().head_deadline;
+  in_.append(piece.data(), static_cast<std::size_t>(count));
+  advance();
+}
+
+void Connection::advance() {
+  if (state_ == State::reading_head) read_head();
+  if (state_ == State::reading_body) read_body();
+}
+
+void Connection::read_head() {
+  const std::size_t length = head_length(in_, searched_);
+  searched_ = in_.size();
+  if (length == std::string_view::npos) {
+    if (in_.size() <= owner_.limits().head.bytes) return;
+    const bool has_line = in_.find('\n') != std::string::npos;
+    return refuse(has_line ? Refusal{431, "the request's head is too long"}
+                           : Refusal{414, "the request's target is too long"});
+  }
+  auto head = parse_head(std::string_view(in_).substr(0, length), owner_.limits().head);
+  in_.erase(0, length);
+  searched_ = 0;
+  if (const auto* refusal = std::get_if<Refusal>(&head)) return refuse(*refusal);
+  begin_request(std::get<Head>(std::move(head)));
+}
+
+void Connection::begin_request(Head head) {
+  closes_ = !head.keeps_alive || owner_.is_draining();
+  if (!head.has_body() && head.method != "POST") return expect(owner_.handle(*this, std::move(head)));
+  resolved_ = owner_.dispatcher().resolve(head);
+  if (owner_.dispatcher().is_upload(*resolved_)) return begin_upload(std::move(head));
+  begin_small_body(head);
+}
+
+void Connection::begin_small_body(const Head& head) {
+  if (head.has_body() && !std::holds_alternative<const Handler*>(resolved_->target)) {
+    // Nobody will take the body: the refusal comes before it.
+    closes_ = true;
+    return expect(owner_.handle(*this, *std::exchange(resolved_, std::nullopt)));
+  }
+  if (head.content_length.value_or(0) > owner_.limits().small_body_bytes) {
+    return refuse({413, "the body is too long for this path"});
+  }
+  body_.emplace(head, owner_.limits().small_body_bytes);
+  state_ = State::reading_body;
+  deadline_ = Clock::now() + owner_.limits().head_deadline;
+  if (!head.expects_continue || !in_.empty()) return;
+  constexpr std::string_view kInvitation = "HTTP/1.1 100 Continue\r\n\r\n";
+  ::send(socket_.number(), kInvitation.data(), kInvitation.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+}
+
+void Connection::begin_upload(Head head) {
+  if (head.content_length.value_or(0) > owner_.limits().upload_bytes) {
+    return refuse({413, "the body is larger than this server takes"});
+  }
+  closes_ = true;
+  Router::Resolved resolved = *std::exchange(resolved_, std::nullopt);
+  state_ = State::uploading;
+  if (owner_.upload(*this, std::move(head), std::move(resolved), std::exchange(in_, {}))) return;
+  refuse({503, "too many uploads are running"});
+}
+
+void Connection::read_body() {
+  switch (body_->feed(in_)) {
+    case BodyCollector::State::incomplete:
+      return;
+    case BodyCollector::State::too_big:
+      return refuse({413, "the body is too long for this path"});
+    case BodyCollector::State::broken:
+      return refuse({400, "the body's chunked coding is broken"});
+    case BodyCollector::State::complete:
+      break;
+  }
+  resolved_->request.body = body_->take();
+  body_.reset();
+  expect(owner_.handle(*this, *std::exchange(resolved_, std::nullopt)));
+}
+
+void Connection::expect(bool is_taken) {
+  state_ = State::handling;
+  if (!is_taken) refuse({503, "too many requests are waiting"});
+}
+
+void Connection::refuse(const Refusal& refusal) {
+  closes_ = true;
+  Reply reply = resolved_ ? owner_.dispatcher().refuse(resolved_->request, refusal) : refusal_reply(refusal);
+  resolved_.reset();
+  body_.reset();
+  answer(std::make_unique<ReplyWriter>(std::move(reply), ReplyForm{.is_head = false, .closes = true}));
+}
+
+void Connection::answer(std::unique_ptr<ReplyWriter> writer) {
+  if (is_half_closed_ && writer->has_stream()) return finish();
+  closes_ = closes_ || writer->closes();
+  writer_ = std::move(writer);
+  judged_bytes_ = 0;
+  if (writer_->has_stream()) writer_->on_ready(owner_.bell_of(*this));
+  write();
+}
+
+void Connection::write() {
+  state_ = State::writing;
+  const bool was_blocked = blocked_since_.has_value();
+  const auto outcome = writer_->write(socket_.number());
+  if (was_blocked && !judge_rate()) return finish();
+  blocked_since_.reset();
+  switch (outcome) {
+    case ReplyWriter::Outcome::finished:
+      writer_.reset();
+      return closes_ ? linger() : next_request();
+    case ReplyWriter::Outcome::blocked:
+      blocked_since_ = Clock::now();
+      return;
+    case ReplyWriter::Outcome::waiting:
+      state_ = State::waiting;
+      return;
+    case ReplyWriter::Outcome::more:
+      return;
+    case ReplyWriter::Outcome::broken:
+      return finish();
+  }
+}
+
+bool Connection::judge_rate() {
+  if (!blocked_since_) return true;
+  const auto now = Clock::now();
+  const std::uint64_t written = writer_->bytes_written();
+  const bool is_fast_enough = rate_.add(written - judged_bytes_, now - *blocked_since_);
+  judged_bytes_ = written;
+  blocked_since_ = now;
+  return is_fast_enough;
+}
+
+void Connection::next_request() {
+  const Limits& limits = owner_.limits();
+  state_ = State::reading_head;
+  deadline_ = Clock::now() + (in_.empty() ? limits.idle_timeout : limits.head_deadline);
+  if (!in_.empty()) return advance();
+  if (is_half_closed_ || owner_.is_draining()) finish();
+}
+
+void Connection::linger() {
+  // Closing with unread bytes would reset the connection, and the reset may overtake the answer.
+  ::shutdown(socket_.number(), SHUT_WR);
+  state_ = State::lingering;
+  deadline_ = Clock::now() + owner_.limits().linger;
+}
+
+void Connection::finish() {
+  state_ = State::finished;
+  writer_.reset();
+}
+
+}  // namespace geosis::server::http

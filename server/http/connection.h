@@ -1,0 +1,118 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "server/http/body_collector.h"
+#include "server/http/descriptor.h"
+#include "server/http/dispatcher.h"
+#include "server/http/limits.h"
+#include "server/http/rate_guard.h"
+#include "server/http/reply_writer.h"
+
+namespace geosis::server::http {
+
+class Connection;
+
+/// What connections ask of the loop that holds them.
+class ConnectionOwner {
+ public:
+  virtual ~ConnectionOwner() = default;
+  virtual const Limits& limits() const = 0;
+  virtual const Dispatcher& dispatcher() const = 0;
+  /// No further request is taken on any connection.
+  virtual bool is_draining() const = 0;
+  /// Finds the handler and runs it elsewhere; the answer comes by answer(). False = too much to do already.
+  virtual bool handle(Connection& connection, Head head) = 0;
+  /// The same with the handler found, its body complete.
+  virtual bool handle(Connection& connection, Router::Resolved resolved) = 0;
+  /// The same with a body that is still to be read; until the answer comes the socket belongs to the upload's thread.
+  virtual bool upload(Connection& connection, Head head, Router::Resolved resolved, std::string already) = 0;
+  /// Calls on_bell() of this connection soon; rung from any thread, also when the connection is gone.
+  virtual std::function<void()> bell_of(const Connection& connection) = 0;
+};
+
+/// One client's connection: its requests are read, handed on and answered strictly one after the other, so pipelined
+/// ones keep their order. Lives in the loop's thread and never blocks.
+class Connection {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  Connection(std::uint64_t id, Descriptor socket, std::string peer, ConnectionOwner& owner);
+
+  std::uint64_t id() const { return id_; }
+  int socket() const { return socket_.number(); }
+  const std::string& peer() const { return peer_; }
+
+  void on_events(std::uint32_t events);
+  void on_bell();
+  /// Deadlines and rates; called a few times a second.
+  void on_tick();
+  /// Ends the connection if it is between two requests.
+  void on_drain();
+  /// Begins to write; what handle() and upload() lead to.
+  void answer(std::unique_ptr<ReplyWriter> writer);
+  /// Breaks the socket while a thread reads an upload from it.
+  void interrupt();
+
+  /// The epoll events it waits for; 0 = none, not even failures.
+  std::uint32_t interest() const;
+  bool is_finished() const { return state_ == State::finished; }
+  bool is_uploading() const { return state_ == State::uploading; }
+  /// The request's answer ends the connection.
+  bool closes() const { return closes_; }
+
+ private:
+  enum class State {
+    reading_head,
+    reading_body,  ///< of a small request
+    handling,      ///< a handler's thread is at work
+    uploading,     ///< an upload's thread is at work and owns the socket
+    writing,       ///< the socket is full, or others have their turn
+    waiting,       ///< the reply's stream has nothing yet
+    lingering,     ///< all is said; the peer may still be sending
+    finished,
+  };
+
+  void receive();
+  void advance();
+  void read_head();
+  void begin_request(Head head);
+  void begin_small_body(const Head& head);
+  void begin_upload(Head head);
+  void read_body();
+  void write();
+  void next_request();
+  void linger();
+  void finish();
+
+  void expect(bool is_taken);
+  /// An answer before, or instead of, a handler's: the connection closes, for its next bytes are in doubt.
+  void refuse(const Refusal& refusal);
+  /// False when the peer reads too slowly.
+  bool judge_rate();
+
+  std::uint64_t id_;
+  Descriptor socket_;
+  std::string peer_;
+  ConnectionOwner& owner_;
+  State state_ = State::reading_head;
+  Clock::time_point deadline_;
+  std::string in_;            ///< received, not yet used
+  std::size_t searched_ = 0;  ///< bytes of in_ that hold no end of a head
+  bool closes_ = false;
+  bool is_half_closed_ = false;               ///< the peer sends no more
+  std::optional<Router::Resolved> resolved_;  ///< of a request whose body is being read
+  std::optional<BodyCollector> body_;
+  std::unique_ptr<ReplyWriter> writer_;
+  std::optional<Clock::time_point> blocked_since_;
+  std::uint64_t judged_bytes_ = 0;  ///< of the writer's, which the rate has counted
+  RateGuard rate_;
+};
+
+}  // namespace geosis::server::http

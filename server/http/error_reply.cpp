@@ -1,0 +1,87 @@
+#include "server/http/error_reply.h"
+
+#include <string_view>
+#include <utility>
+
+#include "server/app/errors.h"
+#include "server/http/reply_head.h"
+
+namespace geosis::server::http {
+namespace {
+
+constexpr const char* kRetryAfterSeconds = "1";
+
+/// The JSON pointer that a message about a document names before its colon, and what it says after it.
+struct Located {
+  std::string pointer, detail;
+};
+
+Located locate(const std::string& message) {
+  constexpr std::string_view kDocument = "request ";
+  const std::size_t start = message.compare(0, kDocument.size(), kDocument) == 0 ? kDocument.size() : 0;
+  const std::size_t colon = message.find(": ", start);
+  if (colon == std::string::npos || message[start] != '/') return {{}, message};
+  return {message.substr(start, colon - start), message.substr(colon + 2)};
+}
+
+Json problem_document(int status, const char* title, ErrorCode code, const std::string& detail) {
+  return {{"type", std::string("urn:geosis:problem:") + name_of(code)},
+          {"title", title},
+          {"status", status},
+          {"detail", detail},
+          {"code", name_of(code)}};
+}
+
+Reply problem_reply(int status, const Json& document) {
+  Reply reply;
+  reply.status = status;
+  reply.headers = {{"Content-Type", "application/problem+json"}, {"Cache-Control", "no-store"}};
+  if (status == 503 || status == 429) reply.headers.emplace_back("Retry-After", kRetryAfterSeconds);
+  reply.body = document_text(document);
+  return reply;
+}
+
+ErrorCode code_of(int status) {
+  switch (status) {
+    case 404:
+      return ErrorCode::not_found;
+    case 408:
+      return ErrorCode::deadline_exceeded;
+    case 413:
+    case 414:
+    case 431:
+      return ErrorCode::limit_exceeded;
+    case 405:
+    case 415:
+    case 417:
+    case 501:
+    case 505:
+      return ErrorCode::unsupported;
+    case 416:
+      return ErrorCode::invalid_argument;
+    case 500:
+      return ErrorCode::internal;
+    case 503:
+      return ErrorCode::unavailable;
+    default:
+      return ErrorCode::malformed_input;
+  }
+}
+
+}  // namespace
+
+Reply error_reply(const Error& error, const Json& more) {
+  const ErrorNumbers& numbers = numbers_of(error.code);
+  const Located located = locate(error.message);
+  Json document = problem_document(numbers.http_status, numbers.title, error.code, located.detail);
+  if (!located.pointer.empty()) document["pointer"] = located.pointer;
+  document.update(more);
+  return problem_reply(numbers.http_status, document);
+}
+
+Reply refusal_reply(const Refusal& refusal) {
+  const int status = refusal.status;
+  return problem_reply(status, problem_document(status, status_phrase(status), code_of(status), refusal.detail));
+}
+
+}  // namespace geosis::server::http

@@ -1,0 +1,55 @@
+#include "server/http/front.h"
+
+#include <thread>
+#include <utility>
+
+#include "server/http/front_loop.h"
+
+namespace geosis::server::http {
+
+/// The loop and its thread.
+class Front::Running {
+ public:
+  Running(const FrontOptions& options, Router routes, Listener listener, Poller poller,
+          std::shared_ptr<Mailbox> mailbox)
+      : loop_(options, std::move(routes), std::move(listener), std::move(poller), std::move(mailbox)),
+        thread_([this] { loop_.run(); }) {}
+  ~Running() { stop(); }
+
+  FrontLoop& loop() { return loop_; }
+  void stop() {
+    loop_.stop();
+    if (thread_.joinable()) thread_.join();
+  }
+
+ private:
+  FrontLoop loop_;
+  std::thread thread_;
+};
+
+Result<std::unique_ptr<Front>> Front::start(FrontOptions options, Router routes) {
+  auto listener = Listener::open(options.listen);
+  if (!listener) return std::move(listener).error();
+  auto poller = Poller::open();
+  if (!poller) return std::move(poller).error();
+  auto mailbox = Mailbox::open();
+  if (!mailbox) return std::move(mailbox).error();
+  auto running = std::make_unique<Running>(options, std::move(routes), *std::move(listener), *std::move(poller),
+                                           *std::move(mailbox));
+  return std::unique_ptr<Front>(new Front(std::move(running)));
+}
+
+Front::Front(std::unique_ptr<Running> running) : running_(std::move(running)) {}
+Front::~Front() = default;
+
+std::uint16_t Front::port() const {
+  return running_->loop().port();
+}
+bool Front::drain(std::chrono::milliseconds grace) {
+  return running_->loop().drain(grace);
+}
+void Front::stop() {
+  running_->stop();
+}
+
+}  // namespace geosis::server::http

@@ -1,0 +1,204 @@
+#include "server/http/front_loop.h"
+
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <sys/socket.h>
+
+#include "server/http/error_reply.h"
+#include "server/http/upload_body.h"
+
+namespace geosis::server::http {
+namespace {
+
+constexpr std::uint64_t kListenerKey = 0, kMailboxKey = 1, kFirstConnection = 2;
+constexpr std::chrono::milliseconds kTick{100};
+
+/// The reply of `run`, ready to be written; whatever happens there is one.
+template <class Run>
+std::unique_ptr<ReplyWriter> written_reply(const ReplyForm& form, Run run) {
+  try {
+    return std::make_unique<ReplyWriter>(run(), form);
+  } catch (...) {
+    return std::make_unique<ReplyWriter>(refusal_reply({500, "an unexpected failure"}), form);
+  }
+}
+
+}  // namespace
+
+FrontLoop::FrontLoop(const FrontOptions& options, Router routes, Listener listener, Poller poller,
+                     std::shared_ptr<Mailbox> mailbox)
+    : limits_(options.limits),
+      dispatcher_(std::move(routes), options.cors),
+      listener_(std::move(listener)),
+      poller_(std::move(poller)),
+      mailbox_(std::move(mailbox)),
+      handlers_(options.handler_threads, options.queued_requests),
+      uploads_(options.upload_threads),
+      port_(listener_.port()),
+      next_id_(kFirstConnection) {}
+
+void FrontLoop::run() {
+  poller_.watch(mailbox_->descriptor(), kMailboxKey, EPOLLIN);
+  poller_.watch(listener_.descriptor(), kListenerKey, EPOLLIN);
+  while (!is_stopping_) {
+    for (const epoll_event& event : poller_.wait(kTick)) on_event(event);
+    if (Connection::Clock::now() >= next_tick_) tick();
+    if (is_draining_) drain_some();
+  }
+  close_all();
+}
+
+bool FrontLoop::drain(std::chrono::milliseconds grace) {
+  is_draining_ = true;
+  mailbox_->wake();
+  std::unique_lock lock(mutex_);
+  return drained_.wait_for(lock, grace, [this] { return is_drained_; });
+}
+
+void FrontLoop::stop() {
+  is_stopping_ = true;
+  mailbox_->wake();
+}
+
+void FrontLoop::on_event(const epoll_event& event) {
+  if (event.data.u64 == kListenerKey) return accept_all();
+  if (event.data.u64 == kMailboxKey) return read_letters();
+  const auto found = connections_.find(event.data.u64);
+  if (found == connections_.end()) return;
+  found->second->on_events(event.events);
+  settle(*found->second);
+}
+
+void FrontLoop::accept_all() {
+  while (listener_.is_open()) {
+    Listener::Accepted accepted = listener_.accept();
+    switch (accepted.outcome) {
+      case Listener::Accepted::Outcome::connection:
+        admit(std::move(accepted));
+        break;
+      case Listener::Accepted::Outcome::none:
+        return;
+      case Listener::Accepted::Outcome::exhausted:
+        poller_.forget(listener_.descriptor());  // until the next tick
+        return;
+    }
+  }
+}
+
+void FrontLoop::admit(Listener::Accepted accepted) {
+  std::size_t& of_peer = peers_[accepted.peer];
+  if (connections_.size() >= limits_.connections || of_peer >= limits_.connections_per_peer) {
+    constexpr std::string_view kFull =
+        "HTTP/1.1 503 Service Unavailable\r\nRetry-After: 1\r\nContent-Length: 0\r\nConnection: close\r\n\r\n";
+    ::send(accepted.socket.number(), kFull.data(), kFull.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (of_peer == 0) peers_.erase(accepted.peer);
+    return;
+  }
+  ++of_peer;
+  const std::uint64_t id = next_id_++;
+  ConnectionOwner& owner = *this;
+  auto connection = std::make_unique<Connection>(id, std::move(accepted.socket), std::move(accepted.peer), owner);
+  settle(*connections_.emplace(id, std::move(connection)).first->second);
+}
+
+void FrontLoop::read_letters() {
+  for (Letter& letter : mailbox_->take()) {
+    if (letter.answer) uploads_.finished(letter.connection);
+    const auto found = connections_.find(letter.connection);
+    if (found == connections_.end()) continue;  // its client left; so does the answer
+    Connection& connection = *found->second;
+    if (letter.answer) {
+      connection.answer(std::move(letter.answer));
+    } else {
+      connection.on_bell();
+    }
+    settle(connection);
+  }
+}
+
+void FrontLoop::tick() {
+  next_tick_ = Connection::Clock::now() + kTick;
+  if (listener_.is_open()) poller_.watch(listener_.descriptor(), kListenerKey, EPOLLIN);
+  for_each([](Connection& connection) { connection.on_tick(); });
+}
+
+void FrontLoop::drain_some() {
+  if (listener_.is_open()) {
+    accept_all();  // who connected before is still served
+    poller_.forget(listener_.descriptor());
+    listener_.close();
+  }
+  for_each([](Connection& connection) { connection.on_drain(); });
+  if (!connections_.empty()) return;
+  const std::lock_guard lock(mutex_);
+  is_drained_ = true;
+  drained_.notify_all();
+}
+
+void FrontLoop::close_all() {
+  for (const auto& [id, connection] : connections_)
+    if (connection->is_uploading()) connection->interrupt();
+  mailbox_->close();
+  handlers_.stop();
+  uploads_.join_all();
+  for_each([this](Connection& connection) { remove(connection); });
+  listener_.close();
+}
+
+void FrontLoop::settle(Connection& connection) {
+  if (connection.is_finished()) return remove(connection);
+  poller_.watch(connection.socket(), connection.id(), connection.interest());
+}
+
+void FrontLoop::remove(Connection& connection) {
+  poller_.forget(connection.socket());
+  const auto peer = peers_.find(connection.peer());
+  if (--peer->second == 0) peers_.erase(peer);
+  connections_.erase(connection.id());
+}
+
+template <class Action>
+void FrontLoop::for_each(Action action) {
+  std::vector<std::uint64_t> ids;
+  ids.reserve(connections_.size());
+  for (const auto& [id, connection] : connections_) ids.push_back(id);
+  for (const std::uint64_t id : ids) {
+    action(*connections_.at(id));
+    const auto left = connections_.find(id);
+    if (left != connections_.end()) settle(*left->second);
+  }
+}
+
+bool FrontLoop::handle(Connection& connection, Head head) {
+  const ReplyForm form{.is_head = head.method == "HEAD", .closes = connection.closes()};
+  return handlers_.submit([this, id = connection.id(), form, head = std::move(head)] {
+    mailbox_->post({id, written_reply(form, [&] { return dispatcher_.run(dispatcher_.resolve(head)); })});
+  });
+}
+
+bool FrontLoop::handle(Connection& connection, Router::Resolved resolved) {
+  const ReplyForm form{.is_head = false, .closes = connection.closes()};
+  return handlers_.submit([this, id = connection.id(), form, resolved = std::move(resolved)] {
+    mailbox_->post({id, written_reply(form, [&] { return dispatcher_.run(resolved); })});
+  });
+}
+
+bool FrontLoop::upload(Connection& connection, Head head, Router::Resolved resolved, std::string already) {
+  const auto work = [this, id = connection.id(), socket = connection.socket(), head = std::move(head),
+                     resolved = std::move(resolved), already = std::move(already)] {
+    UploadBody body(socket, head, already, limits_);
+    const ReplyForm form{.is_head = false, .closes = true};
+    mailbox_->post({id, written_reply(form, [&] { return dispatcher_.run_upload(resolved, body); })});
+  };
+  // The thread owns the socket from its first moment on.
+  poller_.forget(connection.socket());
+  return uploads_.start(connection.id(), work);
+}
+
+std::function<void()> FrontLoop::bell_of(const Connection& connection) {
+  return [mailbox = mailbox_, id = connection.id()] { mailbox->post({id, nullptr}); };
+}
+
+}  // namespace geosis::server::http

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+
+#include "server/http/connection.h"
+#include "server/http/front.h"
+#include "server/http/handler_pool.h"
+#include "server/http/listener.h"
+#include "server/http/mailbox.h"
+#include "server/http/poller.h"
+#include "server/http/upload_threads.h"
+
+namespace geosis::server::http {
+
+/// The front's one loop: it wakes connections when their sockets, streams, handlers or deadlines are ready.
+class FrontLoop final : private ConnectionOwner {
+ public:
+  FrontLoop(const FrontOptions& options, Router routes, Listener listener, Poller poller,
+            std::shared_ptr<Mailbox> mailbox);
+
+  /// Serves until stop(); the calling thread becomes the loop's.
+  void run();
+
+  // From any thread:
+  std::uint16_t port() const { return port_; }
+  bool drain(std::chrono::milliseconds grace);
+  void stop();
+
+ private:
+  const Limits& limits() const override { return limits_; }
+  const Dispatcher& dispatcher() const override { return dispatcher_; }
+  bool is_draining() const override { return is_draining_; }
+  bool handle(Connection& connection, Head head) override;
+  bool handle(Connection& connection, Router::Resolved resolved) override;
+  bool upload(Connection& connection, Head head, Router::Resolved resolved, std::string already) override;
+  std::function<void()> bell_of(const Connection& connection) override;
+
+  void on_event(const epoll_event& event);
+  void accept_all();
+  void admit(Listener::Accepted accepted);
+  void read_letters();
+  void tick();
+  void drain_some();
+  void close_all();
+  /// Follows a connection's new wishes; it may be gone afterwards.
+  void settle(Connection& connection);
+  void remove(Connection& connection);
+  /// Calls `action` for each connection, of which any may be removed meanwhile.
+  template <class Action>
+  void for_each(Action action);
+
+  Limits limits_;
+  Dispatcher dispatcher_;
+  Listener listener_;
+  Poller poller_;
+  std::shared_ptr<Mailbox> mailbox_;
+  HandlerPool handlers_;
+  UploadThreads uploads_;
+  std::uint16_t port_;
+  std::uint64_t next_id_;
+  std::unordered_map<std::uint64_t, std::unique_ptr<Connection>> connections_;
+  std::map<std::string, std::size_t> peers_;  ///< connections by address
+  Connection::Clock::time_point next_tick_;
+
+  std::atomic<bool> is_draining_ = false, is_stopping_ = false;
+  std::mutex mutex_;
+  std::condition_variable drained_;
+  bool is_drained_ = false;
+};
+
+}  // namespace geosis::server::http

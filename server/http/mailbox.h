@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "engine/base/result.h"
+#include "server/http/descriptor.h"
+#include "server/http/reply_writer.h"
+
+namespace geosis::server::http {
+
+/// What other threads tell the loop about one of its connections.
+struct Letter {
+  std::uint64_t connection = 0;
+  std::unique_ptr<ReplyWriter> answer;  ///< unset: the connection's stream may go on
+};
+
+/// The loop's letter box: any thread posts, the loop's thread sleeps on the descriptor and takes. Shared, so that a
+/// stream's bell that rings late still finds it.
+class Mailbox {
+ public:
+  static Result<std::shared_ptr<Mailbox>> open();
+
+  /// After close() the letter is thrown away.
+  void post(Letter letter);
+  /// Wakes the loop without a letter.
+  void wake();
+  std::vector<Letter> take();
+  void close();
+  int descriptor() const { return event_.number(); }
+
+ private:
+  explicit Mailbox(Descriptor event) : event_(std::move(event)) {}
+
+  Descriptor event_;
+  std::mutex mutex_;
+  std::vector<Letter> letters_;
+  bool is_closed_ = false;
+};
+
+}  // namespace geosis::server::http

@@ -1,0 +1,126 @@
+#include "server/http/reply_writer.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <exception>
+#include <utility>
+
+#include <sys/socket.h>
+#include <sys/uio.h>
+
+#include "server/http/error_reply.h"
+
+namespace geosis::server::http {
+namespace {
+
+constexpr std::size_t kPullBytes = 64 * 1024;
+constexpr std::size_t kTurnBytes = 8 * kPullBytes;
+constexpr std::size_t kSizeRoom = 16;  ///< hexadecimal digits of a chunk's size and CRLF
+constexpr std::string_view kLineEnd = "\r\n";
+constexpr std::string_view kLastChunk = "0\r\n\r\n";
+
+}  // namespace
+
+ReplyWriter::ReplyWriter(Reply reply, const ReplyForm& form) : closes_(form.closes) {
+  if (!is_writable(reply)) reply = refusal_reply({500, "the answer could not be written"});
+  head_ = reply_head(reply, form);
+  pending_[0] = head_;
+  if (form.is_head || is_bodiless(reply.status)) return;
+  stream_ = std::move(reply.stream);
+  left_ = reply.length;
+  if (stream_) return;
+  body_ = std::move(reply.body);
+  pending_[1] = body_;
+}
+
+void ReplyWriter::on_ready(std::function<void()> bell) {
+  if (stream_) stream_->on_ready(std::move(bell));
+}
+
+ReplyWriter::Outcome ReplyWriter::write(int socket) {
+  std::uint64_t turn_end = written_ + kTurnBytes;
+  for (;;) {
+    while (has_pending()) {
+      if (send_pending(socket) >= 0 || errno == EINTR) continue;
+      return errno == EAGAIN ? Outcome::blocked : Outcome::broken;
+    }
+    if (!stream_) return Outcome::finished;
+    if (written_ >= turn_end) return Outcome::more;
+    if (const auto outcome = refill()) return *outcome;
+  }
+}
+
+std::ptrdiff_t ReplyWriter::send_pending(int socket) {
+  std::array<iovec, 2> pieces{};
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    pieces[i] = {const_cast<char*>(pending_[i].data()), pending_[i].size()};
+  }
+  msghdr message{};
+  message.msg_iov = pieces.data();
+  message.msg_iovlen = pieces.size();
+  const ssize_t sent = ::sendmsg(socket, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (sent < 0) return sent;
+  written_ += static_cast<std::uint64_t>(sent);
+  auto left = static_cast<std::size_t>(sent);
+  for (std::string_view& piece : pending_) {
+    const std::size_t taken = std::min(left, piece.size());
+    piece.remove_prefix(taken);
+    left -= taken;
+  }
+  return sent;
+}
+
+std::optional<ReplyWriter::Outcome> ReplyWriter::refill() {
+  const std::size_t room = static_cast<std::size_t>(std::min<std::uint64_t>(left_.value_or(kPullBytes), kPullBytes));
+  if (room == 0) {  // all of the stated length is written
+    stream_.reset();
+    return std::nullopt;
+  }
+  if (!buffer_) buffer_ = std::make_unique_for_overwrite<char[]>(kSizeRoom + kPullBytes + kLineEnd.size());
+  const auto pulled = pull(room);
+  if (!pulled || pulled->count > room) return Outcome::broken;
+  switch (pulled->state) {
+    case ByteStream::Pulled::State::data:
+      if (pulled->count == 0) return Outcome::more;
+      frame(pulled->count);
+      return std::nullopt;
+    case ByteStream::Pulled::State::wait:
+      buffer_.reset();
+      return Outcome::waiting;
+    case ByteStream::Pulled::State::end:
+      break;
+  }
+  if (left_) return Outcome::broken;  // shorter than it said
+  stream_.reset();
+  pending_[0] = kLastChunk;
+  return std::nullopt;
+}
+
+Result<ByteStream::Pulled> ReplyWriter::pull(std::size_t room) {
+  try {
+    return stream_->pull(std::as_writable_bytes(std::span(buffer_.get() + kSizeRoom, room)));
+  } catch (const std::exception&) {
+    return Error{ErrorCode::internal, "a stream threw"};
+  }
+}
+
+void ReplyWriter::frame(std::size_t count) {
+  char* const data = buffer_.get() + kSizeRoom;
+  if (left_) {
+    *left_ -= count;
+    pending_[0] = {data, count};
+    return;
+  }
+  std::array<char, kSizeRoom> digits{};
+  const char* const end = std::to_chars(digits.data(), digits.data() + digits.size(), count, 16).ptr;
+  const auto length = static_cast<std::size_t>(end - digits.data());
+  char* const start = data - length - kLineEnd.size();
+  std::memcpy(start, digits.data(), length);
+  std::memcpy(data - kLineEnd.size(), kLineEnd.data(), kLineEnd.size());
+  std::memcpy(data + count, kLineEnd.data(), kLineEnd.size());
+  pending_[0] = {start, length + count + 2 * kLineEnd.size()};
+}
+
+}  // namespace geosis::server::http

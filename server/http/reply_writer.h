@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "server/http/exchange.h"
+#include "server/http/reply_head.h"
+
+namespace geosis::server::http {
+
+/// One reply on its way to a non-blocking socket. A stream is pulled 64 KiB at a time, only when the socket took what
+/// was pulled before; while it waits for its next bytes no buffer is held. Its destruction destroys the stream.
+class ReplyWriter {
+ public:
+  ReplyWriter(Reply reply, const ReplyForm& form);
+  ReplyWriter(const ReplyWriter&) = delete;  // what is pending points into it
+  ReplyWriter& operator=(const ReplyWriter&) = delete;
+
+  enum class Outcome {
+    finished,
+    blocked,  ///< the socket is full
+    waiting,  ///< the stream has nothing yet; its bell will ring
+    more,     ///< enough for one turn: others wait
+    broken,   ///< the socket or the stream failed; the peer must see an incomplete answer
+  };
+  Outcome write(int socket);
+
+  /// bell   called from any thread when a stream that waits may go on.
+  void on_ready(std::function<void()> bell);
+  bool has_stream() const { return stream_ != nullptr; }
+  bool closes() const { return closes_; }
+  std::uint64_t bytes_written() const { return written_; }
+
+ private:
+  bool has_pending() const { return !pending_[0].empty() || !pending_[1].empty(); }
+  /// What send() says; the bytes it took are no longer pending.
+  std::ptrdiff_t send_pending(int socket);
+  /// Pulls the stream's next bytes. Nothing = there is something to send, or the stream was finished.
+  std::optional<Outcome> refill();
+  Result<ByteStream::Pulled> pull(std::size_t room);
+  void frame(std::size_t count);
+
+  std::string head_, body_;
+  std::unique_ptr<ByteStream> stream_;
+  std::optional<std::uint64_t> left_;  ///< of a stream of known length; unset = chunked
+  std::unique_ptr<char[]> buffer_;     ///< room for a chunk's size, 64 KiB, line ends and the last chunk
+  std::array<std::string_view, 2> pending_;
+  std::uint64_t written_ = 0;
+  bool closes_;
+};
+
+}  // namespace geosis::server::http

@@ -1,0 +1,197 @@
+#include <charconv>
+#include <chrono>
+#include <utility>
+
+#include "server/app/problem.h"
+#include "server/app/result_streams.h"
+#include "server/documents/request.h"
+#include "server/http/error_reply.h"
+#include "server/http/json_reply.h"
+#include "server/http/parameters.h"
+#include "server/http/received_file.h"
+#include "server/http/routes.h"
+#include "server/http/upload_options.h"
+
+namespace geosis::server::http {
+namespace {
+
+constexpr const char* kImmutable = "public, max-age=31536000, immutable";
+constexpr const char* kBoundary = "geosis-9d1c7a52e6";  // long enough not to occur in a part by chance
+constexpr const char* kMultipart = "multipart/mixed";
+
+Priority priority_of(const Request& request) {
+  return header(request, "priority") == "batch" ? Priority::batch : Priority::interactive;
+}
+
+Reply stream_reply(std::unique_ptr<ByteStream> stream, std::string type) {
+  Reply reply;
+  reply.headers = {{"Content-Type", std::move(type)}, {"Cache-Control", "no-store"}};
+  reply.stream = std::move(stream);
+  return reply;
+}
+
+Reply level_stream_reply(std::shared_ptr<Extraction> extraction, std::function<void()> abandoned) {
+  return stream_reply(level_stream(std::move(extraction), kBoundary, std::move(abandoned)),
+                      std::string(kMultipart) + "; boundary=" + kBoundary);
+}
+
+Reply create(Services services, const Request& request) {
+  if (auto known = only_parameters(request, {}); !known) return error_reply(known.error());
+  const auto wanted = parse_json(request.body);
+  if (!wanted) return error_reply({ErrorCode::invalid_argument, "request body: " + wanted.error().message});
+  const auto extraction = services.extractions.create(request.captures[0], *wanted, priority_of(request));
+  if (!extraction) return error_reply(extraction.error());
+  const std::string id = (*extraction)->identity().id;
+  if (accepts(request, kMultipart)) {
+    return level_stream_reply(*extraction, [services, id] { (void)services.extractions.withdraw(id); });
+  }
+  if (const auto wait = preference(request).wait_seconds) (*extraction)->wait_for(std::chrono::seconds(*wait));
+  const bool is_done = (*extraction)->snapshot().state == JobState::done;
+  Reply reply = json_reply(is_done ? 200 : 202, resource_document(**extraction));
+  reply.headers.emplace_back("Location", "/v1/extractions/" + id);
+  return reply;
+}
+
+Reply get(Services services, const Request& request) {
+  const auto extraction = services.extractions.find(request.captures[0]);
+  return extraction ? json_reply(200, resource_document(**extraction)) : error_reply(extraction.error());
+}
+
+Reply events(Services services, const Request& request) {
+  const auto extraction = services.extractions.find(request.captures[0]);
+  if (!extraction) return error_reply(extraction.error());
+  const std::string last = header(request, "last-event-id");
+  std::uint64_t after = 0;
+  std::from_chars(last.data(), last.data() + last.size(), after);
+  return stream_reply(event_stream(*extraction, after), "text/event-stream");
+}
+
+Reply stream(Services services, const Request& request) {
+  const auto extraction = services.extractions.find(request.captures[0]);
+  if (!extraction) return error_reply(extraction.error());
+  return level_stream_reply(*extraction, {});
+}
+
+/// 409 with the state, for what exists only once the extraction is done.
+Reply not_done(const Extraction& extraction) {
+  const std::string state = name_of(extraction.snapshot().state);
+  return error_reply(
+      {ErrorCode::already_exists, "extraction " + extraction.identity().id + ": it is " + state + ", not done"},
+      {{"state", state}});
+}
+
+Reply manifest(Services services, const Request& request) {
+  const auto extraction = services.extractions.find(request.captures[0]);
+  if (!extraction) return error_reply(extraction.error());
+  const auto now = (*extraction)->snapshot();
+  if (!now.manifest) return not_done(**extraction);
+  Reply reply = json_reply(200, *now.manifest);
+  // Its id names volume, request and result version, of which the manifest is a pure function.
+  reply.headers = {{"Content-Type", "application/json"},
+                   {"Cache-Control", kImmutable},
+                   {"ETag", "\"" + (*extraction)->identity().id + "\""}};
+  return reply;
+}
+
+Reply file_reply(Result<LevelFile> file, const char* type, const std::string& transform) {
+  if (!file) return error_reply(file.error());
+  Reply reply;
+  reply.headers = {{"Content-Type", type}, {"Cache-Control", kImmutable}, {"ETag", "\"" + file->sha256 + "\""}};
+  if (!transform.empty()) reply.headers.emplace_back("X-Geosis-Transform", transform);
+  reply.stream = std::move(file->stream);
+  reply.length = file->bytes;
+  return reply;
+}
+
+int small_number(const std::string& digits) {
+  int number = -1;
+  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  return problem == std::errc{} ? number : -1;
+}
+
+Reply level(Services services, const Request& request) {
+  const std::string &id = request.captures[0], format = request.captures[2];
+  const auto extraction = services.extractions.find(id);
+  if (!extraction) return error_reply(extraction.error());
+  if (!(*extraction)->snapshot().manifest) return not_done(**extraction);
+  const LevelFormat wanted = format == "drc" ? LevelFormat::drc : format == "ply" ? LevelFormat::ply : LevelFormat::obj;
+  const char* const type = format == "drc" ? "model/vnd.google.draco" : format == "ply" ? "model/ply" : "model/obj";
+  auto file = services.extractions.level(id, small_number(request.captures[1]), wanted);
+  const std::string transform = file ? file->transform : "";
+  return file_reply(std::move(file), type, transform);
+}
+
+Reply part(Services services, const Request& request) {
+  return file_reply(services.extractions.part(request.captures[0], small_number(request.captures[1]),
+                                              small_number(request.captures[2])),
+                    "model/vnd.google.draco", "");
+}
+
+Reply remove(Services services, const Request& request) {
+  if (auto known = only_parameters(request, {"purge"}); !known) return error_reply(known.error());
+  const auto purge = flag_parameter(request, "purge", false);
+  if (!purge) return error_reply(purge.error());
+  const std::string& id = request.captures[0];
+  const auto done = *purge ? services.extractions.purge(id) : services.extractions.withdraw(id);
+  if (!done) return error_reply(done.error());
+  Reply reply;
+  reply.status = 204;
+  return reply;
+}
+
+/// The request of a one-shot call, from its query.
+Result<Json> one_shot_request(const Request& request) {
+  const auto text = parameter(request, "range");
+  if (!text) return Error{ErrorCode::invalid_argument, "parameter range: expected LOW,HIGH"};
+  const auto ends = pair_of("range", *text);
+  if (!ends) return ends.error();
+  auto range = range_from_text(ends->first, ends->second);
+  if (!range) return std::move(range).error();
+  Json wanted = {{"range", *std::move(range)}};
+  for (const char* name : {"mode", "space"}) {
+    if (const auto value = parameter(request, name)) wanted[name] = *value;
+  }
+  const auto cap = flag_parameter(request, "cap", true);
+  if (!cap) return cap.error();
+  wanted["cap"] = *cap;
+  return wanted;
+}
+
+Reply extract(Services services, const Request& request, BodyReader& body) {
+  const auto wanted = one_shot_request(request);
+  if (!wanted) return error_reply(wanted.error());
+  auto options = upload_options(request.query, {"range", "mode", "space", "cap"});
+  if (!options) return error_reply(options.error());
+  const auto received = receive_file(request, body, services.store);
+  if (!received) return error_reply(received.error());
+  if (auto added = add_form_options(received->fields, *options); !added) return error_reply(added.error());
+  const auto file = open_file(received->file->path());
+  if (!file) return error_reply(file.error());
+  std::vector<GridCandidate> candidates;
+  NoProgress unwatched;
+  const auto extraction = services.extractions.create_transient(**file, *options, *wanted, unwatched, candidates);
+  if (!extraction) return upload_refusal(extraction.error(), candidates);
+  return level_stream_reply(*extraction, [watched = std::weak_ptr(*extraction)] {
+    if (const auto held = watched.lock()) held->cancel();
+  });
+}
+
+}  // namespace
+
+void add_extraction_routes(Router& router, Services services) {
+  const auto with = [services](auto handler) {
+    return [=](const Request& request) { return handler(services, request); };
+  };
+  router.post("/v1/volumes/([^/]+)/extractions", with(create));
+  router.upload("/v1/extract",
+                [services](const Request& request, BodyReader& body) { return extract(services, request, body); });
+  router.get("/v1/extractions/([^/]+)", with(get));
+  router.remove("/v1/extractions/([^/]+)", with(remove));
+  router.get("/v1/extractions/([^/]+)/events", with(events));
+  router.get("/v1/extractions/([^/]+)/stream", with(stream));
+  router.get("/v1/extractions/([^/]+)/manifest", with(manifest));
+  router.get("/v1/extractions/([^/]+)/lods/([0-9]+)\\.(drc|ply|obj)", with(level));
+  router.get("/v1/extractions/([^/]+)/lods/([0-9]+)/parts/([0-9]+)\\.drc", with(part));
+}
+
+}  // namespace geosis::server::http

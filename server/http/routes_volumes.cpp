@@ -1,0 +1,171 @@
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "server/documents/import_options.h"
+#include "server/documents/slice_png.h"
+#include "server/documents/volume_document.h"
+#include "server/http/error_reply.h"
+#include "server/http/json_reply.h"
+#include "server/http/parameters.h"
+#include "server/http/received_file.h"
+#include "server/http/routes.h"
+#include "server/http/upload_options.h"
+
+namespace geosis::server::http {
+namespace {
+
+constexpr std::int64_t kLargestPage = 1000;
+
+Reply upload(Services services, const Request& request, BodyReader& body) {
+  auto options = upload_options(request.query, {"name"});
+  if (!options) return error_reply(options.error());
+  auto digest = stated_digest(request);
+  if (!digest) return error_reply(digest.error());
+  options->digest = *std::move(digest);
+  options->name = parameter(request, "name").value_or("");
+
+  auto received = receive_file(request, body, services.store);
+  if (!received) return error_reply(received.error());
+  if (auto added = add_form_options(received->fields, *options); !added) return error_reply(added.error());
+  if (options->name.empty()) options->name = received->name;
+  const auto file = open_file(received->file->path());
+  if (!file) return error_reply(file.error());
+  std::vector<GridCandidate> candidates;
+  NoProgress unwatched;
+  const auto added = services.volumes.add(**file, *options, unwatched, candidates);
+  if (!added) return upload_refusal(added.error(), candidates);
+  Reply reply = json_reply(added->is_new ? 201 : 200, added->document);
+  reply.headers.emplace_back("Location", "/v1/volumes/" + added->document.at("id").get<std::string>());
+  return reply;
+}
+
+Reply list(Services services, const Request& request) {
+  if (auto known = only_parameters(request, {"page_size", "page_token"}); !known) return error_reply(known.error());
+  const auto page_size = whole_parameter(request, "page_size", 100, 1, kLargestPage);
+  if (!page_size) return error_reply(page_size.error());
+  const auto page =
+      services.volumes.list(static_cast<std::size_t>(*page_size), parameter(request, "page_token").value_or(""));
+  return page ? json_reply(200, *page) : error_reply(page.error());
+}
+
+Reply get(Services services, const Request& request) {
+  const auto document = services.volumes.document(request.captures[0]);
+  return document ? json_reply(200, *document) : error_reply(document.error());
+}
+
+Reply change(Services services, const Request& request) {
+  const auto changes = parse_json(request.body);
+  if (!changes) return error_reply({ErrorCode::invalid_argument, "request body: " + changes.error().message});
+  const auto document = services.volumes.change(request.captures[0], *changes);
+  return document ? json_reply(200, *document) : error_reply(document.error());
+}
+
+Reply remove(Services services, const Request& request) {
+  const std::string& id = request.captures[0];
+  if (auto known = services.volumes.document(id); !known) return error_reply(known.error());
+  if (auto purged = services.extractions.purge_results_of(id); !purged) return error_reply(purged.error());
+  if (auto removed = services.volumes.remove(id); !removed) return error_reply(removed.error());
+  Reply reply;
+  reply.status = 204;
+  return reply;
+}
+
+Reply histogram(Services services, const Request& request) {
+  if (auto known = only_parameters(request, {"bins"}); !known) return error_reply(known.error());
+  const auto bins = whole_parameter(request, "bins", 256, 1, kMaxHistogramBins);
+  if (!bins) return error_reply(bins.error());
+  Histogram counted;
+  const auto done = run_on_worker(services.queue, [&](Job& job) -> Result<void> {
+    auto result = services.volumes.histogram(request.captures[0], static_cast<int>(*bins), job);
+    if (!result) return std::move(result).error();
+    counted = *std::move(result);
+    return {};
+  });
+  if (!done) return error_reply(done.error());
+  return json_reply(200, {{"edges", counted.edges}, {"counts", counted.counts}, {"missing", counted.missing}});
+}
+
+/// range=LOW,HIGH of the colours; the slice's own values where it is not given.
+Result<ValueRange> colour_range(const Request& request, const Slice& slice) {
+  ValueRange range{INFINITY, -INFINITY};
+  const auto text = parameter(request, "range");
+  if (!text) {
+    for (const float f : slice.samples) {
+      if (f < range.min) range.min = f;
+      if (f > range.max) range.max = f;
+    }
+    return range.min <= range.max ? range : ValueRange{0, 1};
+  }
+  const auto ends = pair_of("range", *text);
+  if (!ends) return ends.error();
+  for (const auto& [end, value] : {std::pair{&ends->first, &range.min}, {&ends->second, &range.max}}) {
+    const auto [stop, problem] = std::from_chars(end->data(), end->data() + end->size(), *value);
+    if (problem != std::errc{} || stop != end->data() + end->size() || !std::isfinite(*value)) {
+      return Error{ErrorCode::invalid_argument, "parameter range: \"" + *text + "\"; expected two numbers"};
+    }
+  }
+  return range;
+}
+
+Reply slice_as_floats(const Slice& slice) {
+  Reply reply;
+  reply.headers = {{"Content-Type", "application/octet-stream"}};
+  reply.body.resize(slice.samples.size() * sizeof(float));
+  std::memcpy(reply.body.data(), slice.samples.data(), reply.body.size());  // little-endian, as the machines we run on
+  return reply;
+}
+
+Reply slice_as_png(const Request& request, const Slice& slice) {
+  const auto range = colour_range(request, slice);
+  if (!range) return error_reply(range.error());
+  const auto colormap = parse_colormap(parameter(request, "colormap").value_or("gray"));
+  if (!colormap) return error_reply(colormap.error());
+  const auto png = slice_png(slice, range->min, range->max, *colormap);
+  if (!png) return error_reply(png.error());
+  Reply reply;
+  reply.headers = {{"Content-Type", "image/png"}};
+  reply.body.assign(reinterpret_cast<const char*>(png->data()), png->size());
+  return reply;
+}
+
+Reply slice(Services services, const Request& request) {
+  if (auto known = only_parameters(request, {"format", "range", "colormap"}); !known) return error_reply(known.error());
+  const std::string &axis_name = request.captures[1], format = parameter(request, "format").value_or("png");
+  if (format != "png" && format != "f32") {
+    return error_reply({ErrorCode::invalid_argument, "parameter format: \"" + format + "\"; expected png or f32"});
+  }
+  const SliceAxis axis = axis_name == "inline"      ? SliceAxis::inline_
+                         : axis_name == "crossline" ? SliceAxis::crossline
+                                                    : SliceAxis::sample;
+  std::int32_t index = -1;
+  const std::string& text = request.captures[2];
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), index);
+  if (problem != std::errc{}) return error_reply({ErrorCode::invalid_argument, "slice index " + text + ": too large"});
+  const auto read = services.volumes.slice(request.captures[0], axis, index);
+  if (!read) return error_reply(read.error());
+  Reply reply = format == "f32" ? slice_as_floats(*read) : slice_as_png(request, *read);
+  if (reply.status != 200) return reply;
+  reply.headers.emplace_back("X-Geosis-Shape", std::to_string(read->rows) + "," + std::to_string(read->columns));
+  reply.headers.emplace_back("Cache-Control", "public, max-age=31536000, immutable");
+  return reply;
+}
+
+}  // namespace
+
+void add_volume_routes(Router& router, Services services) {
+  const auto with = [services](auto handler) {
+    return [=](const Request& request) { return handler(services, request); };
+  };
+  router.upload("/v1/volumes",
+                [services](const Request& request, BodyReader& body) { return upload(services, request, body); });
+  router.get("/v1/volumes", with(list));
+  router.get("/v1/volumes/([^/]+)", with(get));
+  router.patch("/v1/volumes/([^/]+)", with(change));
+  router.remove("/v1/volumes/([^/]+)", with(remove));
+  router.get("/v1/volumes/([^/]+)/histogram", with(histogram));
+  router.get("/v1/volumes/([^/]+)/slices/(inline|crossline|sample)/([0-9]+)", with(slice));
+}
+
+}  // namespace geosis::server::http

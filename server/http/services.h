@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "server/app/extractions.h"
+#include "server/app/volumes.h"
+#include "server/jobs/job_queue.h"
+#include "server/store/blob_store.h"
+
+namespace geosis::server::http {
+
+/// The use cases that the routes open to HTTP. Outlives the front.
+struct Services {
+  BlobStore& store;
+  Volumes& volumes;
+  Extractions& extractions;
+  JobQueue& queue;
+};
+
+/// Runs work that computes on a worker and waits for it: no handler thread computes itself.
+Result<void> run_on_worker(JobQueue& queue, const JobQueue::Work& work);
+
+}  // namespace geosis::server::http

@@ -1,0 +1,112 @@
+#include "server/service/serve.h"
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <ctime>
+#include <string_view>
+#include <thread>
+#include <utility>
+
+#include "server/app/extractions.h"
+#include "server/app/volumes.h"
+#include "server/http/front.h"
+#include "server/http/routes.h"
+#include "server/jobs/job_queue.h"
+#include "server/store/dir_store.h"
+
+namespace geosis::server {
+namespace {
+
+constexpr const char* kTenant = "default";
+
+bool is_loopback(std::string_view listen) {
+  return listen.starts_with("127.") || listen.starts_with("localhost:") || listen.starts_with("[::1]:");
+}
+
+Result<void> check_exposure(const ServeOptions& options) {
+  if (!options.auth.empty() && options.auth != "none") {
+    return Error{ErrorCode::unsupported, "--auth " + options.auth + ": this version knows only none"};
+  }
+  if (is_loopback(options.listen) || options.auth == "none") return {};
+  return Error{ErrorCode::invalid_argument,
+               "--listen " + options.listen + ": not a loopback address; --auth none lets anybody in who reaches it"};
+}
+
+/// SIGTERM and SIGINT come to whoever waits for them here, and to no other thread.
+class StopSignals {
+ public:
+  StopSignals() {
+    sigemptyset(&set_);
+    sigaddset(&set_, SIGTERM);
+    sigaddset(&set_, SIGINT);
+    pthread_sigmask(SIG_BLOCK, &set_, nullptr);
+    std::signal(SIGPIPE, SIG_IGN);
+  }
+  void wait() {
+    int number = 0;
+    sigwait(&set_, &number);
+  }
+  /// True when one came in time.
+  bool wait_for(std::chrono::milliseconds time) {
+    const std::timespec limit{time.count() / 1000, (time.count() % 1000) * 1'000'000};
+    return sigtimedwait(&set_, nullptr, &limit) > 0;
+  }
+
+ private:
+  sigset_t set_{};
+};
+
+/// Until everything has finished, the time is over, or a second signal comes.
+void drain(http::Front& front, StopSignals& signals, std::chrono::milliseconds grace) {
+  std::atomic<bool> is_drained{false};
+  std::jthread draining([&] {
+    front.drain(grace);
+    is_drained = true;
+  });
+  while (!is_drained && !signals.wait_for(std::chrono::milliseconds(50))) {
+  }
+  front.stop();
+}
+
+http::FrontOptions front_options(const ServeOptions& options) {
+  http::FrontOptions front;
+  front.listen = options.listen;
+  front.limits.upload_bytes = options.max_body_bytes;
+  front.cors.origins = options.cors_origins;
+  return front;
+}
+
+std::string host_of(const std::string& listen) {
+  return listen.substr(0, listen.rfind(':'));
+}
+
+}  // namespace
+
+Result<void> serve(const ServeOptions& options) {
+  if (auto safe = check_exposure(options); !safe) return safe;
+  StopSignals signals;  // before the first thread starts, so that every thread inherits the mask
+  const auto store = open_dir_store(options.store);
+  if (!store) return store.error();
+  Volumes volumes(**store, kTenant, options.threads);
+  JobQueue queue(options.workers, static_cast<std::size_t>(options.queued));
+  Extractions extractions(**store, volumes, queue, kTenant, options.threads);
+
+  http::Router router;
+  const http::Services services{**store, volumes, extractions, queue};
+  http::add_volume_routes(router, services);
+  http::add_extraction_routes(router, services);
+  http::add_service_routes(router, services, options.page);
+  auto front = http::Front::start(front_options(options), std::move(router));
+  if (!front) return std::move(front).error();
+  std::printf("listening on http://%s:%u\n", host_of(options.listen).c_str(), unsigned{(*front)->port()});
+  std::fflush(stdout);
+
+  signals.wait();
+  std::fprintf(stderr, "geosis: finishing what runs; a second signal stops at once\n");
+  drain(**front, signals, options.drain);
+  queue.drain(std::chrono::milliseconds(0));  // whoever still waits for work has been answered or is gone
+  return {};
+}
+
+}  // namespace geosis::server

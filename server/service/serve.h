@@ -1,0 +1,33 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "engine/base/result.h"
+
+namespace geosis::server {
+
+/// How a server is set up: flags, environment and configuration file end up here.
+struct ServeOptions {
+  std::string listen = "127.0.0.1:8080";
+  std::filesystem::path store = "geosis-store";
+  std::filesystem::path page;  ///< folder of the built page
+  std::string auth;            ///< "none": anybody may call; "" allows loopback alone
+  std::vector<std::string> cors_origins;
+  std::uint64_t max_body_bytes = std::uint64_t{1} << 40;
+  int threads = 1;  ///< that one extraction may use
+  int workers = 2;  ///< extractions at one time
+  int queued = 64;  ///< extractions that may wait for a worker
+  std::chrono::seconds drain{25};
+};
+
+/// Serves until SIGTERM or SIGINT, then lets running answers finish for `drain`, and stops; a second signal stops at
+/// once. Prints "listening on http://HOST:PORT" on stdout when it is ready.
+///
+/// errors   invalid_argument: an address that is not loopback without auth; those of store and front.
+Result<void> serve(const ServeOptions& options);
+
+}  // namespace geosis::server

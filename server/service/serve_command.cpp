@@ -1,0 +1,57 @@
+#include "server/service/serve_command.h"
+
+#include <cctype>
+#include <memory>
+#include <string>
+
+#include "engine/base/parallel.h"
+#include "server/service/serve.h"
+
+namespace geosis::server {
+namespace {
+
+/// "--max-body" is GEOSIS_MAX_BODY.
+std::string variable_of(const std::string& flag) {
+  std::string name = "GEOSIS_";
+  for (const char c : flag.substr(2))
+    name += c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return name;
+}
+
+struct ServeArguments {
+  ServeOptions options;
+  std::string store = "geosis-store", page = GEOSIS_PAGE_FOLDER;
+  int drain_seconds = 25;
+};
+
+}  // namespace
+
+Command add_serve_command(CLI::App& app) {
+  auto& command = *app.add_subcommand("serve", "Serve volumes and extractions over HTTP, and the page that shows them");
+  command.configurable();
+  auto arguments = std::make_shared<ServeArguments>();
+  ServeOptions& options = arguments->options;
+  options.threads = default_threads();
+  const auto flag = [&](const char* name, auto& value, const char* help) {
+    return command.add_option(name, value, help)->envname(variable_of(name))->capture_default_str();
+  };
+  flag("--listen", options.listen, "HOST:PORT; port 0 = any that is free")->type_name("ADDRESS");
+  flag("--store", arguments->store, "folder of everything that is kept")->type_name("DIR");
+  flag("--threads", options.threads, "threads that one extraction may use")->check(CLI::Range(1, 1024));
+  flag("--workers", options.workers, "extractions at one time")->check(CLI::Range(1, 1024));
+  flag("--queued", options.queued, "extractions that may wait; more are refused")->check(CLI::Range(1, 1'000'000));
+  flag("--max-body", options.max_body_bytes, "largest upload")->type_name("BYTES");
+  flag("--auth", options.auth, "none = anybody may call; needed for addresses other than loopback")->type_name("HOW");
+  flag("--cors-origin", options.cors_origins, "origins whose pages may call")->type_name("ORIGIN ...");
+  flag("--page", arguments->page, "folder of the built page")->type_name("DIR");
+  flag("--drain-seconds", arguments->drain_seconds, "how long running answers may take after SIGTERM")
+      ->check(CLI::Range(0, 3600));
+  return [arguments]() -> Result<void> {
+    arguments->options.store = arguments->store;
+    arguments->options.page = arguments->page;
+    arguments->options.drain = std::chrono::seconds(arguments->drain_seconds);
+    return serve(arguments->options);
+  };
+}
+
+}  // namespace geosis::server

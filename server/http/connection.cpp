@@ -223,8 +223,7 @@ void Connection::next_request() {
   const Limits& limits = owner_.limits();
   state_ = State::reading_head;
   deadline_ = Clock::now() + (in_.empty() ? limits.idle_timeout : limits.head_deadline);
-  if (!in_.empty()) return advance();
-  if (is_half_closed_ || owner_.is_draining()) finish();
+  if (!in_.empty()) advance();
 }
 
 void Connection::linger() {

@@ -1,5 +1,6 @@
 #include "server/http/front.h"
 
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -34,9 +35,13 @@ Result<std::unique_ptr<Front>> Front::start(FrontOptions options, Router routes)
   if (!poller) return std::move(poller).error();
   auto mailbox = Mailbox::open();
   if (!mailbox) return std::move(mailbox).error();
-  auto running = std::make_unique<Running>(options, std::move(routes), *std::move(listener), *std::move(poller),
-                                           *std::move(mailbox));
-  return std::unique_ptr<Front>(new Front(std::move(running)));
+  try {
+    auto running = std::make_unique<Running>(options, std::move(routes), *std::move(listener), *std::move(poller),
+                                             *std::move(mailbox));
+    return std::unique_ptr<Front>(new Front(std::move(running)));
+  } catch (const std::system_error& error) {
+    return Error{ErrorCode::unavailable, std::string("cannot start the front's threads: ") + error.what()};
+  }
 }
 
 Front::Front(std::unique_ptr<Running> running) : running_(std::move(running)) {}

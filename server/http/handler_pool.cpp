@@ -1,11 +1,17 @@
 #include "server/http/handler_pool.h"
 
+#include <system_error>
 #include <utility>
 
 namespace geosis::server::http {
 
 HandlerPool::HandlerPool(std::size_t threads, std::size_t most_queued) : most_queued_(most_queued) {
-  for (std::size_t i = 0; i < threads; ++i) threads_.emplace_back([this] { run(); });
+  try {
+    for (std::size_t i = 0; i < threads; ++i) threads_.emplace_back([this] { run(); });
+  } catch (const std::system_error&) {  // a thread that runs must not be destroyed
+    stop();
+    throw;
+  }
 }
 
 bool HandlerPool::submit(std::function<void()> work) {

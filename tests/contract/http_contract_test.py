@@ -1,0 +1,447 @@
+"""Walks every HTTP call of api/openapi.yaml against a running server, good and bad ones.
+
+Each answer has to have a documented status, the documented headers and a body of the documented schema. Environment:
+GEOSIS = the built binary, GEOSIS_SHARED = folder of shared data (its surveys are left out when it is absent).
+"""
+import base64
+import hashlib
+import json
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+from contract import OPENAPI, Contract
+from service import GEOSIS, Answer, Client, Service
+
+CONTRACT = Contract()
+PAGE = "http://page.example"
+ABSENT = "0" * 64
+BODY = {"range": [0.55, None]}
+SHARED = Path(os.environ.get("GEOSIS_SHARED", Path(__file__).resolve().parents[3] / "shared"))
+
+
+def setUpModule():
+    """One server with one small sample survey for all tests."""
+    global FOLDER, SERVICE, CLIENT, SURVEY, VOLUME
+    FOLDER = Path(tempfile.mkdtemp(prefix="geosis-contract-"))
+    unittest.addModuleCleanup(shutil.rmtree, FOLDER)
+    subprocess.run([GEOSIS, "synth", FOLDER / "survey.sgy", "--dims", "48,56,64"], check=True)
+    SURVEY = (FOLDER / "survey.sgy").read_bytes()
+    SERVICE = unittest.enterModuleContext(Service(FOLDER / "store", "--cors-origin", PAGE))
+    CLIENT = Client(SERVICE.address, CONTRACT)
+    VOLUME = CLIENT.upload(SURVEY, "name=survey.sgy").json()["id"]
+
+
+def done_extraction(request=None, volume=None):
+    """Id of an extraction that is done."""
+    answer = CLIENT.send_json("POST", f"/v1/volumes/{volume or VOLUME}/extractions", request or BODY, Prefer="wait=60")
+    resource = answer.json()
+    assert resource["state"] == "done", resource
+    return resource["id"]
+
+
+def raw_cube(inlines, crosslines, samples, value=lambda i, j, k: float(i + j + k)):
+    return b"".join(
+        struct.pack("<f", value(i, j, k)) for i in range(inlines) for j in range(crosslines) for k in range(samples))
+
+
+def seismic_line(traces, samples):
+    """A SEG-Y file whose trace headers number no inlines and crosslines."""
+    binary = bytearray(400)
+    struct.pack_into(">h", binary, 16, 4000)
+    struct.pack_into(">h", binary, 20, samples)
+    struct.pack_into(">h", binary, 24, 5)
+    data = bytearray(b"\x40" * 3200) + binary
+    for trace in range(traces):
+        header = bytearray(240)
+        struct.pack_into(">ii", header, 0, trace + 1, trace + 1)
+        struct.pack_into(">ii", header, 20, 100 + trace, 1)
+        struct.pack_into(">hh", header, 114, samples, 4000)
+        data += header + struct.pack(f">{samples}f", *map(float, range(samples)))
+    return bytes(data)
+
+
+def two_grids(lines, traces, samples):
+    """A SEG-Y file with good inline and crossline numbers at two pairs of bytes, 189/193 and 5/21, of unlike grids."""
+    binary = bytearray(400)
+    struct.pack_into(">h", binary, 16, 4000)
+    struct.pack_into(">h", binary, 20, samples)
+    struct.pack_into(">h", binary, 24, 5)
+    data = bytearray(b"\x40" * 3200) + binary
+    for trace in range(lines * traces):
+        header = bytearray(240)
+        struct.pack_into(">ii", header, 188, trace // traces + 1, trace % traces + 1)
+        struct.pack_into(">i", header, 4, trace % lines + 1)
+        struct.pack_into(">i", header, 20, trace // lines + 1)
+        struct.pack_into(">hh", header, 114, samples, 4000)
+        data += header + struct.pack(f">{samples}f", *map(float, range(samples)))
+    return bytes(data)
+
+
+class Refusals(unittest.TestCase):
+    """A test case that expects problems."""
+
+    def refused(self, answer, status, code=None, **members):
+        problem = answer.json()
+        self.assertEqual((answer.status, problem["status"]), (status, status), answer.body)
+        if code:
+            self.assertEqual(problem["code"], code, problem)
+        for name, value in members.items():
+            self.assertEqual(problem.get(name), value, problem)
+        return problem
+
+
+class Volumes(Refusals):
+    def test_the_same_file_is_the_same_volume(self):
+        again = CLIENT.upload(SURVEY, "name=other.sgy")
+        self.assertEqual((again.status, again.json()["id"]), (200, VOLUME))
+        self.assertEqual(again.headers["location"], f"/v1/volumes/{VOLUME}")
+
+    def test_another_file_is_a_new_volume_that_can_be_deleted(self):
+        answer = CLIENT.upload(raw_cube(4, 5, 6), "format=raw&dims=4,5,6&name=cube")
+        volume = answer.json()
+        self.assertEqual((answer.status, volume["dims"], volume["name"]), (201, [4, 5, 6], "cube"))
+        extraction = done_extraction({"range": [3, 6]}, volume["id"])
+        self.assertEqual(CLIENT.call("DELETE", f"/v1/volumes/{volume['id']}").status, 204)
+        self.refused(CLIENT.get(f"/v1/volumes/{volume['id']}"), 404, "not_found")
+        self.refused(CLIENT.get(f"/v1/extractions/{extraction}"), 404, "not_found")
+        self.refused(CLIENT.call("DELETE", f"/v1/volumes/{volume['id']}"), 404, "not_found")
+
+    def test_a_form_is_read_like_a_plain_body(self):
+        options = json.dumps({"format": "raw", "dims": [3, 4, 5]})
+        lines = [b"--xyz", b'Content-Disposition: form-data; name="options"', b"", options.encode(), b"--xyz",
+                 b'Content-Disposition: form-data; name="file"; filename="in.raw"', b"", raw_cube(3, 4, 5), b"--xyz--", b""]
+        answer = CLIENT.call("POST", "/v1/volumes", body=b"\r\n".join(lines),
+                             headers={"Content-Type": "multipart/form-data; boundary=xyz"})
+        self.assertEqual((answer.status, answer.json()["name"]), (201, "in.raw"))
+
+    def test_the_digest_is_checked(self):
+        digest = base64.b64encode(hashlib.sha256(SURVEY).digest()).decode()
+        self.assertEqual(CLIENT.upload(SURVEY, Content_Digest=f"sha-256=:{digest}:").status, 200)
+        other = base64.b64encode(hashlib.sha256(b"").digest()).decode()
+        self.refused(CLIENT.upload(SURVEY, Content_Digest=f"sha-256=:{other}:"), 400, "invalid_argument")
+        self.refused(CLIENT.upload(SURVEY, Content_Digest="sha-256=:?:"), 400, "invalid_argument")
+
+    def test_a_survey_that_could_be_two_grids_is_refused_with_both(self):
+        problem = self.refused(CLIENT.upload(two_grids(6, 8, 4)), 422)
+        self.assertGreaterEqual(len(problem["candidates"]), 2)
+        one = problem["candidates"][0]
+        query = f"inline_byte={one['inline_byte']}&crossline_byte={one['crossline_byte']}"
+        self.assertEqual(CLIENT.upload(two_grids(6, 8, 4), query).json()["dims"], one["dims"])
+
+    def test_files_that_are_no_volume_leave_nothing_behind(self):
+        before = CLIENT.get("/v1/volumes").json()
+        for data in (seismic_line(40, 16), SURVEY[:-100], b"not a survey"):
+            self.refused(CLIENT.upload(data), 422)
+        self.refused(CLIENT.upload(raw_cube(2, 2, 2), "format=raw&dims=3,3,3"), 422)
+        self.assertEqual(CLIENT.get("/v1/volumes").json(), before)
+
+    def test_bad_options_are_named(self):
+        for query in ("dims=1,2", "inline_byte=0", "format=gif", "no_such_option=1"):
+            problem = self.refused(CLIENT.upload(SURVEY, query), 400, "invalid_argument")
+            self.assertIn(query.partition("=")[0], problem["detail"])
+
+    def test_encoded_bodies_are_not_taken(self):
+        self.refused(CLIENT.upload(SURVEY, Content_Encoding="gzip"), 415)
+
+    def test_the_list_comes_in_pages(self):
+        CLIENT.upload(raw_cube(2, 3, 4), "format=raw&dims=2,3,4")
+        ids, token = [], ""
+        while token is not None:
+            page = CLIENT.get(f"/v1/volumes?page_size=1&page_token={token}").json()
+            ids += [volume["id"] for volume in page["volumes"]]
+            token = page["next_page_token"]
+        self.assertIn(VOLUME, ids)
+        self.assertEqual(len(ids), len(set(ids)))
+        self.assertEqual(ids, [volume["id"] for volume in CLIENT.get("/v1/volumes").json()["volumes"]])
+        self.refused(CLIENT.get("/v1/volumes?page_size=0"), 400, "invalid_argument")
+
+    def test_name_and_crs_can_be_changed_and_nothing_else(self):
+        target = f"/v1/volumes/{VOLUME}"
+        changed = CLIENT.send_json("PATCH", target, {"name": "renamed", "crs": "EPSG:23031"}).json()
+        self.assertEqual((changed["name"], changed["crs"]), ("renamed", "EPSG:23031"))
+        self.assertEqual(CLIENT.get(target).json(), changed)
+        self.assertIsNone(CLIENT.send_json("PATCH", target, {"crs": None}).json()["crs"])
+        self.refused(CLIENT.send_json("PATCH", target, {"dims": [1, 2, 3]}), 400, "invalid_argument", pointer="/dims")
+        self.refused(CLIENT.send_json("PATCH", target, "{"), 400, "invalid_argument")
+        self.refused(CLIENT.send_json("PATCH", f"/v1/volumes/{ABSENT}", {"name": "x"}), 404, "not_found")
+
+    def test_the_histogram_counts_every_sample_once(self):
+        histogram = CLIENT.get(f"/v1/volumes/{VOLUME}/histogram?bins=10").json()
+        self.assertEqual((len(histogram["edges"]), len(histogram["counts"])), (11, 10))
+        self.assertEqual(sum(histogram["counts"]) + histogram["missing"], 48 * 56 * 64)
+        self.assertEqual(len(CLIENT.get(f"/v1/volumes/{VOLUME}/histogram").json()["counts"]), 256)
+        self.refused(CLIENT.get(f"/v1/volumes/{VOLUME}/histogram?bins=0"), 400, "invalid_argument")
+        self.refused(CLIENT.get(f"/v1/volumes/{ABSENT}/histogram"), 404, "not_found")
+
+
+class Slices(Refusals):
+    def test_samples_are_rows_of_float32(self):
+        cube = raw_cube(3, 4, 5, lambda i, j, k: 100.0 * i + 10.0 * j + k)
+        volume = CLIENT.upload(cube, "format=raw&dims=3,4,5").json()["id"]
+        for axis, index, shape, first_row in (("inline", 2, "4,5", (200, 201, 202, 203, 204)),
+                                              ("crossline", 3, "3,5", (30, 31, 32, 33, 34)),
+                                              ("sample", 1, "3,4", (1, 11, 21, 31))):
+            answer = CLIENT.get(f"/v1/volumes/{volume}/slices/{axis}/{index}?format=f32")
+            self.assertEqual(answer.headers["x-geosis-shape"], shape)
+            self.assertEqual(struct.unpack_from(f"<{len(first_row)}f", answer.body), first_row)
+
+    def test_images_have_one_pixel_a_sample(self):
+        answer = CLIENT.get(f"/v1/volumes/{VOLUME}/slices/inline/10?range=-1,1&colormap=seismic")
+        self.assertEqual(answer.body[:8], b"\x89PNG\r\n\x1a\n")
+        width, height = struct.unpack_from(">II", answer.body, 16)
+        rows, columns = map(int, answer.headers["x-geosis-shape"].split(","))
+        self.assertEqual((height, width), (rows, columns))
+
+    def test_what_is_not_there_is_refused(self):
+        target = f"/v1/volumes/{VOLUME}/slices/inline"
+        self.assertIn(CLIENT.get(f"{target}/48").status, (400, 404))
+        self.refused(CLIENT.get(f"{target}/0?colormap=rainbow"), 400, "invalid_argument")
+        self.refused(CLIENT.get(f"{target}/0?format=gif"), 400, "invalid_argument")
+        self.refused(CLIENT.get(f"/v1/volumes/{ABSENT}/slices/inline/0"), 404, "not_found")
+        self.refused(CLIENT.get(f"/v1/volumes/{VOLUME}/slices/time/0"), 404)
+
+
+class Extractions(Refusals):
+    def post(self, request, **headers):
+        return CLIENT.send_json("POST", f"/v1/volumes/{VOLUME}/extractions", request, **headers)
+
+    def test_equal_requests_are_one_extraction(self):
+        first = self.post({"range": [0.5, None]}, Prefer="wait=60")
+        again = self.post({"mode": "exact", "range": [0.5, None], "cap": True})
+        self.assertEqual((first.status, again.status), (200, 200))
+        self.assertEqual(first.json()["id"], again.json()["id"])
+        self.assertEqual(again.headers["location"], f"/v1/extractions/{first.json()['id']}")
+
+    def test_without_waiting_it_is_accepted_and_gets_done(self):
+        answer = self.post({"range": [0.56, None]})
+        self.assertIn(answer.status, (200, 202))
+        extraction = done_extraction({"range": [0.56, None]})
+        self.assertEqual(answer.json()["id"], extraction)
+        resource = CLIENT.get(f"/v1/extractions/{extraction}").json()
+        self.assertEqual((resource["state"], resource["progress"], len(resource["levels"])), ("done", 1, 5))
+
+    def test_bad_requests_are_refused_with_their_place(self):
+        for request, status, pointer in (({"range": [0.5, None], "colour": 1}, 400, "/colour"),
+                                         ({"range": [1, 0]}, 400, "/range"),
+                                         ({}, 400, "/range"),
+                                         ({"range": [0, "a"]}, 400, "/range/1"),
+                                         ({"range": [0, 1], "grid": "structural"}, 422, "/grid"),
+                                         ({"range": [0, 1], "levels": []}, 400, "/levels")):
+            self.refused(self.post(request), status, pointer=pointer)
+        self.refused(self.post("{nonsense"), 400)
+        self.refused(self.post({"range": [0, 1], "region": {"inline": [0, 900], "crossline": [0, 5], "sample": [0, 5]}}), 400)
+
+    def test_nothing_in_the_range_is_an_answer(self):
+        extraction = done_extraction({"range": [1000, 2000]})
+        manifest = CLIENT.get(f"/v1/extractions/{extraction}/manifest").json()
+        self.assertEqual((manifest["levels"], manifest["empty"]), ([], True))
+        self.assertEqual(len(CLIENT.get(f"/v1/extractions/{extraction}/stream").parts()), 1)
+        self.refused(CLIENT.get(f"/v1/extractions/{extraction}/lods/0.drc"), 404, "not_found")
+
+    def test_events_tell_each_level_and_the_end(self):
+        extraction = done_extraction()
+        events = self.events(CLIENT.get(f"/v1/extractions/{extraction}/events"))
+        levels = [data["level"] for name, data in events if name == "level"]
+        self.assertEqual(levels, [4, 3, 2, 1, 0])
+        self.assertEqual(events[-1][0], "done")
+        CONTRACT.validate({"$ref": "#/components/schemas/Extraction"}, events[-1][1])
+        for name, data in events:
+            if name == "level":
+                CONTRACT.validate({"$ref": "#/components/schemas/Level"}, data)
+        rest = self.events(CLIENT.get(f"/v1/extractions/{extraction}/events", Last_Event_ID="3"))
+        self.assertEqual([data["level"] for name, data in rest if name == "level"], [1, 0])
+
+    @staticmethod
+    def events(answer):
+        """[(name, data)] of an answer of server-sent events."""
+        events = []
+        for block in answer.body.decode().strip().split("\n\n"):
+            fields = dict(line.split(": ", 1) for line in block.splitlines() if not line.startswith(":"))
+            if "event" in fields:
+                events.append((fields["event"], json.loads(fields["data"])))
+        return events
+
+    def test_purging_removes_the_result_and_asking_again_brings_it_back(self):
+        extraction = done_extraction({"range": [0.57, None]})
+        self.assertEqual(CLIENT.call("DELETE", f"/v1/extractions/{extraction}?purge=true").status, 204)
+        self.refused(CLIENT.get(f"/v1/extractions/{extraction}"), 404, "not_found")
+        self.assertEqual(done_extraction({"range": [0.57, None]}), extraction)
+
+    def test_interest_can_be_withdrawn(self):
+        extraction = self.post({"range": [0.58, None]}).json()["id"]
+        self.assertEqual(CLIENT.call("DELETE", f"/v1/extractions/{extraction}").status, 204)
+        self.assertEqual(done_extraction({"range": [0.58, None]}), extraction)
+        self.refused(CLIENT.call("DELETE", f"/v1/extractions/{extraction}?purge=maybe"), 400, "invalid_argument")
+
+    def test_what_is_unknown_is_not_found(self):
+        for rest in ("", "/events", "/stream", "/manifest", "/lods/0.drc", "/lods/0/parts/0.drc"):
+            self.refused(CLIENT.get(f"/v1/extractions/{ABSENT}{rest}"), 404, "not_found")
+        self.refused(CLIENT.call("DELETE", f"/v1/extractions/{ABSENT}"), 404, "not_found")
+        self.refused(CLIENT.send_json("POST", f"/v1/volumes/{ABSENT}/extractions", BODY), 404, "not_found")
+
+
+class Results(Refusals):
+    def test_the_stream_is_coarsest_first_and_ends_with_the_manifest(self):
+        extraction = done_extraction()
+        *parts, (headers, text) = CLIENT.get(f"/v1/extractions/{extraction}/stream").parts()
+        self.assertEqual(headers["content-type"], "application/json")
+        manifest = json.loads(text)
+        CONTRACT.validate({"$ref": "#/components/schemas/Manifest"}, manifest)
+        expected = [(level["level"], number, part["sha256"])
+                    for level in reversed(manifest["levels"]) for number, part in enumerate(level["parts"])]
+        received = [(int(head["x-geosis-level"]), int(head["x-geosis-part"]), hashlib.sha256(body).hexdigest())
+                    for head, body in parts]
+        self.assertEqual(received, expected)
+
+    def test_a_post_may_be_answered_by_the_stream(self):
+        answer = CLIENT.send_json("POST", f"/v1/volumes/{VOLUME}/extractions", BODY, Accept="multipart/mixed")
+        stream = CLIENT.get(f"/v1/extractions/{done_extraction()}/stream")
+        self.assertEqual([body for _, body in answer.parts()], [body for _, body in stream.parts()])
+
+    def test_urls_of_the_manifest_lead_to_the_bytes_it_certifies(self):
+        extraction = done_extraction()
+        base = f"/v1/extractions/{extraction}/"
+        for level in CLIENT.get(base + "manifest").json()["levels"]:
+            for part in level["parts"]:
+                answer = CLIENT.get(base + part["url"])
+                self.assertEqual(hashlib.sha256(answer.body).hexdigest(), part["sha256"])
+                self.assertEqual(answer.headers["etag"], f'"{part["sha256"]}"')
+                self.assertEqual(len(answer.body), part["bytes"])
+            self.assertEqual(CLIENT.get(base + level["url"]).status, 200)
+
+    def test_every_format_has_a_tag_a_range_and_a_head(self):
+        extraction = done_extraction()
+        for name in ("lods/1.drc", "lods/1.ply", "lods/1.obj", "lods/1/parts/0.drc", "manifest"):
+            target = f"/v1/extractions/{extraction}/{name}"
+            whole = CLIENT.get(target)
+            self.assertEqual(CLIENT.get(target, If_None_Match=whole.headers["etag"]).status, 304)
+            some = CLIENT.get(target, Range="bytes=10-19")
+            self.assertEqual((some.status, some.body), (206, whole.body[10:20]))
+            self.assertEqual(some.headers["content-range"], f"bytes 10-19/{len(whole.body)}")
+            self.assertEqual(CLIENT.get(target, Range=f"bytes={len(whole.body)}-").status, 416)
+            head = CLIENT.call("HEAD", target)
+            self.assertEqual((head.body, head.headers["content-length"]), (b"", str(len(whole.body))))
+
+    def test_draco_files_say_how_they_lie_in_the_world(self):
+        extraction = done_extraction()
+        manifest = CLIENT.get(f"/v1/extractions/{extraction}/manifest").json()
+        answer = CLIENT.get(f"/v1/extractions/{extraction}/lods/4.drc")
+        self.assertEqual([float(number) for number in answer.headers["x-geosis-transform"].split(",")], manifest["transform"])
+
+    def test_levels_that_are_not_there_are_refused(self):
+        base = f"/v1/extractions/{done_extraction()}/lods"
+        for name in ("9.drc", "0/parts/99.drc", "0.gif", "99999999999999999999.drc"):
+            self.refused(CLIENT.get(f"{base}/{name}"), 404)
+
+    def test_one_shot_keeps_nothing_and_gives_the_same_bytes(self):
+        stored = CLIENT.get(f"/v1/extractions/{done_extraction()}/stream").parts()
+        before = CLIENT.get("/v1/volumes").json()
+        answer = CLIENT.call("POST", "/v1/extract?range=0.55,inf", body=SURVEY)
+        self.assertEqual([body for _, body in answer.parts()][:-1], [body for _, body in stored][:-1])
+        self.assertEqual(CLIENT.get("/v1/volumes").json(), before)
+        self.refused(CLIENT.call("POST", "/v1/extract", body=SURVEY), 400, "invalid_argument")
+        self.refused(CLIENT.call("POST", "/v1/extract?range=1,0", body=SURVEY), 400, "invalid_argument")
+        self.refused(CLIENT.call("POST", "/v1/extract?range=0,1", body=b"not a survey"), 422)
+
+
+class SameBytes(unittest.TestCase):
+    """The service and the command line are one pipeline."""
+
+    def check(self, path, low, high):
+        volume = CLIENT.upload(path.read_bytes()).json()["id"]
+        ends = [None if abs(end) == float("inf") else end for end in (low, high)]
+        extraction = done_extraction({"range": ends}, volume)
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run([GEOSIS, "reconstruct", path, "--range", str(low), str(high), "--out", folder],
+                           check=True, capture_output=True)
+            manifest = json.loads(Path(folder, "manifest.json").read_text(encoding="utf-8"))
+            self.assertEqual((manifest["volume"], manifest["id"]), (volume, extraction))
+            for level in manifest["levels"]:
+                for number, part in enumerate(level["parts"]):
+                    answer = CLIENT.get(f"/v1/extractions/{extraction}/lods/{level['level']}/parts/{number}.drc")
+                    self.assertEqual(answer.body, Path(folder, part["url"]).read_bytes())
+        return CLIENT.get(f"/v1/extractions/{extraction}/manifest").json()["levels"], manifest["levels"]
+
+    def assert_same(self, path, low, high):
+        for ours, theirs in zip(*self.check(path, low, high), strict=True):
+            for name in set(ours) - {"url", "parts"}:
+                self.assertEqual(ours[name], theirs[name], name)
+
+    def test_of_the_sample_survey(self):
+        self.assert_same(FOLDER / "survey.sgy", 0.55, float("inf"))
+
+    def test_of_a_field_survey(self):
+        found = sorted(SHARED.glob("data/**/petrel_buildup*.sgy")) + sorted(SHARED.glob("data/**/petrel_buildup*.segy"))
+        if not found:
+            self.skipTest(f"no petrel_buildup below {SHARED}")
+        self.assert_same(found[0], 0.5, float("inf"))
+
+
+class Protocol(Refusals):
+    def test_the_service_says_how_it_is(self):
+        self.assertEqual(CLIENT.get("/livez").status, 200)
+        self.assertTrue(CLIENT.get("/readyz").json()["ready"])
+        self.assertGreaterEqual(CLIENT.get("/version").json()["result_version"], 1)
+
+    def test_it_serves_the_contract_it_was_built_with(self):
+        self.assertEqual(CLIENT.get("/openapi.yaml").body, OPENAPI.read_bytes())
+
+    def test_unknown_paths_and_methods_are_refused(self):
+        self.refused(CLIENT.get("/v1/nothing"), 404, "not_found")
+        answer = CLIENT.call("PUT", "/v1/volumes", body=b"")
+        self.refused(answer, 405)
+        self.assertIn("POST", answer.headers["allow"])
+
+    def test_a_body_without_length_is_refused(self):
+        host = b"Host: " + SERVICE.address.encode()
+        answer = CLIENT.raw(b"POST /v1/volumes HTTP/1.1\r\n" + host + b"\r\n\r\n")
+        self.refused(answer, 411)
+        CONTRACT.check("POST", "/v1/volumes", answer)
+
+    def test_too_large_a_body_is_refused_before_it_is_read(self):
+        head = f"POST /v1/volumes HTTP/1.1\r\nHost: {SERVICE.address}\r\nContent-Length: {1 << 60}\r\n\r\n"
+        answer = CLIENT.raw(head.encode())
+        self.assertIn(answer.status, (413, 507))
+        CONTRACT.check("POST", "/v1/volumes", answer)
+        big = json.dumps({"range": [0, 1], "padding": "x" * (1 << 20)})
+        self.refused(CLIENT.send_json("POST", f"/v1/volumes/{VOLUME}/extractions", big), 413, "limit_exceeded")
+
+    def test_pages_of_named_origins_may_call(self):
+        preflight = CLIENT.call("OPTIONS", f"/v1/volumes/{VOLUME}/extractions", headers={
+            "Origin": PAGE, "Access-Control-Request-Method": "POST", "Access-Control-Request-Headers": "content-type"})
+        self.assertEqual(preflight.status, 204)
+        self.assertEqual(preflight.headers["access-control-allow-origin"], PAGE)
+        self.assertIn("POST", preflight.headers["access-control-allow-methods"])
+        self.assertEqual(CLIENT.get("/v1/volumes", Origin=PAGE).headers["access-control-allow-origin"], PAGE)
+        self.assertNotIn("access-control-allow-origin", CLIENT.get("/v1/volumes", Origin="http://other.example").headers)
+
+
+class TheJudge(unittest.TestCase):
+    """A judge that lets everything pass would prove nothing."""
+
+    def judge(self, target, status, headers, body):
+        Contract().check("GET", target, Answer(status, headers, body))
+
+    def test_refuses_other_statuses_types_and_members(self):
+        good = {"name": "geosis", "version": "1", "result_version": 1}
+        as_json = {"content-type": "application/json"}
+        self.judge("/version", 200, as_json, json.dumps(good).encode())
+        for status, headers, document in ((203, as_json, good), (200, {"content-type": "text/plain"}, good),
+                                          (200, as_json, {**good, "result_version": 0}), (200, as_json, {})):
+            with self.assertRaises(Exception, msg=document):
+                self.judge("/version", status, headers, json.dumps(document).encode())
+
+
+if __name__ == "__main__":
+    program = unittest.main(exit=False)
+    missed = CONTRACT.operations() - {operation for operation, status in CONTRACT.seen if status < 300}
+    if missed and len(sys.argv) == 1:
+        print(f"operations that were never answered well: {', '.join(sorted(missed))}", file=sys.stderr)
+        sys.exit(1)
+    sys.exit(not program.result.wasSuccessful())

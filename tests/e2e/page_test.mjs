@@ -1,0 +1,145 @@
+// The page in Chromium against a running server (GEOSIS_URL) that holds a sample survey. GEOSIS = the built binary, for a
+// second survey; GEOSIS_SCREENSHOTS = folder for pictures.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
+import { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, beforeEach, describe, it } from 'node:test';
+
+const { chromium } = createRequire(new URL('../../viewer/package.json', import.meta.url))('playwright-core');
+
+const { GEOSIS, GEOSIS_URL, GEOSIS_SCREENSHOTS = mkdtempSync(join(tmpdir(), 'geosis-screenshots-')) } = process.env;
+const LEVELS = 5;
+const PATIENCE_MS = 60_000;
+
+let browser;
+let page;
+let mistakes;
+
+const levelRows = () => page.locator('#levels tbody tr');
+const triangles = async () => (await levelRows().last().locator('td').nth(1).textContent()).replace(/\D/g, '');
+
+async function waitUntilDone() {
+  await page.waitForSelector('body[data-phase="done"]', { timeout: PATIENCE_MS });
+  await page.waitForSelector('#levels tr[data-level="0"][aria-current="true"]', { timeout: PATIENCE_MS });
+}
+
+async function screenshot(name) {
+  await page.screenshot({ path: join(GEOSIS_SCREENSHOTS, `${name}.png`) });
+}
+
+/** Share of the canvas' pixels that have the body's colour: clearly more red than blue. */
+async function bodyShare() {
+  const png = (await page.locator('#view').screenshot()).toString('base64');
+  return page.evaluate(async (data) => {
+    const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+    const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
+    context.drawImage(image, 0, 0);
+    const { data: pixels } = context.getImageData(0, 0, image.width, image.height);
+    let warm = 0;
+    for (let at = 0; at < pixels.length; at += 4) warm += pixels[at] > pixels[at + 2] + 40;
+    return warm / (image.width * image.height);
+  }, png);
+}
+
+describe('the page', () => {
+  before(async () => {
+    mkdirSync(GEOSIS_SCREENSHOTS, { recursive: true });
+    browser = await chromium.launch({
+      executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+      args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+    });
+  });
+  after(() => browser?.close());
+
+  beforeEach(async () => {
+    await page?.context().close();
+    page = await browser.newPage({ viewport: { width: 1360, height: 860 } });
+    mistakes = [];
+    page.on('pageerror', (error) => mistakes.push(error.message));
+    await page.goto(GEOSIS_URL);
+    await waitUntilDone();
+  });
+
+  it('opens the first survey and shows every level of its bright body', async () => {
+    assert.equal(await levelRows().count(), LEVELS);
+    assert.match(await page.textContent('#status'), /^Done: \d+ pieces?/);
+    const distances = await levelRows().locator('td:last-child').allTextContents();
+    assert.ok(distances.every((text) => /^[\d.]+ \/ [\d.]+$/.test(text)), distances.join());
+    assert.ok((await bodyShare()) > 0.005, 'no body is drawn');
+    await screenshot('opened');
+    assert.deepEqual(mistakes, []);
+  });
+
+  it('reconstructs again when a handle is moved by keyboard or pointer', async () => {
+    const first = await triangles();
+    await page.focus('#low-handle');
+    await page.keyboard.press('PageUp');
+    await page.waitForFunction((before) => document.querySelector('#levels tbody tr:last-child td:nth-child(2)')
+      ?.textContent.replace(/\D/g, '') !== before, first);
+    await waitUntilDone();
+    const second = await triangles();
+    assert.notEqual(second, first);
+
+    const { x, y, width, height } = await page.locator('#low-handle').boundingBox();
+    await page.mouse.move(x + width / 2, y + height / 2);
+    await page.mouse.down();
+    await page.mouse.move(x + width / 2 + 40, y + height / 2, { steps: 4 });
+    await page.mouse.up();
+    await page.waitForFunction((before) => document.querySelector('#levels tbody tr:last-child td:nth-child(2)')
+      ?.textContent.replace(/\D/g, '') !== before, second);
+    await waitUntilDone();
+    assert.deepEqual(mistakes, []);
+  });
+
+  it('keeps the range in the address, so that a link shows the same body', async () => {
+    await page.fill('#low', '0.6');
+    await page.click('#reconstruct');
+    await page.waitForURL(/range=0\.6/);
+    await waitUntilDone();
+    const shown = await triangles();
+    await page.reload();
+    await waitUntilDone();
+    assert.equal(await triangles(), shown);
+    assert.equal(await page.inputValue('#low'), '0.6');
+  });
+
+  it('says so when nothing lies in the range, and draws nothing', async () => {
+    await page.fill('#low', '1000');
+    await page.click('#reconstruct');
+    await page.getByText('Nothing of the survey lies in this range.').waitFor({ timeout: PATIENCE_MS });
+    assert.equal(await levelRows().count(), 0);
+    assert.equal(await bodyShare(), 0);
+  });
+
+  it('does not ask for a range that makes no sense', async () => {
+    await page.fill('#high', 'high');
+    assert.ok(await page.isDisabled('#reconstruct'));
+    assert.match(await page.textContent('#range-note'), /number/);
+  });
+
+  it('uploads a survey and shows its body', async () => {
+    const folder = mkdtempSync(join(tmpdir(), 'geosis-e2e-'));
+    try {
+      const path = join(folder, 'uploaded.sgy');
+      execFileSync(GEOSIS, ['synth', path, '--dims', '40,48,56', '--seed', '7']);
+      await page.setInputFiles('#file', path);
+      await page.waitForFunction(() => document.title.startsWith('uploaded.sgy'), undefined, { timeout: PATIENCE_MS });
+      await waitUntilDone();
+      assert.match(await page.textContent('#survey-line'), /40 inlines × 48 crosslines × 56 samples/);
+      assert.ok((await bodyShare()) > 0.005, 'no body is drawn');
+      await screenshot('uploaded');
+    } finally {
+      rmSync(folder, { recursive: true });
+    }
+  });
+
+  it('tells kindly why a file is refused', async () => {
+    await page.setInputFiles('#file', { name: 'notes.txt', mimeType: 'text/plain', buffer: Buffer.from('not a survey') });
+    await page.locator('#survey-problem').waitFor({ state: 'visible', timeout: PATIENCE_MS });
+    assert.ok((await page.textContent('#survey-problem')).length > 10);
+    assert.equal(await levelRows().count(), LEVELS);
+  });
+});

@@ -29,18 +29,17 @@ Result<void> FolderTree::make(const fs::path& folder) {
 }
 
 Result<void> FolderTree::flush(const fs::path& folder) {
-  Identity identity;
-  const auto flushed = flush_one(folder, identity);
-  if (!flushed) return flushed.error();
-  if (!*flushed || is_known(identity)) return {};
-  for (fs::path above = folder; above != root_;) {
-    above = above.parent_path();
-    Identity ignored;
-    const auto flushed_above = flush_one(above, ignored);
-    if (!flushed_above) return flushed_above.error();
-    if (!*flushed_above) return {};
+  std::vector<Identity> flushed;
+  for (fs::path at = folder;; at = at.parent_path()) {
+    Identity identity;
+    const auto is_there = flush_one(at, identity);
+    if (!is_there) return is_there.error();
+    if (!*is_there) return {};
+    if (is_known(identity)) break;
+    flushed.push_back(identity);
+    if (at == root_) break;
   }
-  remember(identity);
+  remember(flushed);
   return {};
 }
 
@@ -70,11 +69,11 @@ bool FolderTree::is_known(const Identity& identity) {
   return known_.contains(identity);
 }
 
-void FolderTree::remember(const Identity& identity) {
-  if (identity == Identity{}) return;
+void FolderTree::remember(const std::vector<Identity>& identities) {
   const std::lock_guard lock(mutex_);
-  if (known_.size() == kMaxKnown) known_.clear();
-  known_.insert(identity);
+  if (known_.size() + identities.size() > kMaxKnown) known_.clear();
+  for (const auto& identity : identities)
+    if (identity != Identity{}) known_.insert(identity);
 }
 
 }  // namespace geosis::server

@@ -5,6 +5,8 @@
 #include <mutex>
 #include <set>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "engine/base/result.h"
 #include "server/store/file_calls.h"
@@ -26,7 +28,7 @@ class FolderTree {
   /// Makes the entries of a folder durable, and those of the folders that lead to it. A folder that is gone is no
   /// error: somebody removed what was in it.
   ///
-  /// cost     one fsync; one for each folder on the way when this folder was not flushed before.
+  /// cost     one fsync; one more for each folder on the way up to the first that was flushed before.
   Result<void> flush(const std::filesystem::path& folder);
 
   /// Removes a folder and those that lead to it as far as they are empty.
@@ -35,12 +37,12 @@ class FolderTree {
 
  private:
   // Inode and time of birth: a folder that was removed and made again is another one. While a folder stays, so do those
-  // that lead to it; so what was flushed on the way to it once stays durable.
+  // that lead to it; so when their entries were flushed once, the way to it stays durable.
   using Identity = std::tuple<std::uint64_t, std::int64_t, std::uint32_t>;
 
   Result<bool> flush_one(const std::filesystem::path& folder, Identity& identity);
   bool is_known(const Identity& identity);
-  void remember(const Identity& identity);
+  void remember(const std::vector<Identity>& identities);
 
   FileCalls& calls_;
   std::filesystem::path root_;

@@ -21,6 +21,23 @@ using test::read_file;
 using test::text_of;
 using test::write_file;
 
+// Writes down what is flushed and renamed, in this order.
+class RecordingCalls final : public FileCalls {
+ public:
+  int fsync(int descriptor) override {
+    const fs::path path = fs::read_symlink("/proc/self/fd/" + std::to_string(descriptor));
+    const bool is_staged = path.string().find("/staging/") != std::string::npos;
+    log += "flush " + (is_staged ? "staged" : path.filename().string()) + "; ";
+    return FileCalls::fsync(descriptor);
+  }
+  int rename(const char* from, const char* to) override {
+    const int renamed = FileCalls::rename(from, to);
+    if (renamed == 0) log += "rename " + fs::path(to).filename().string() + "; ";
+    return renamed;
+  }
+  std::string log;
+};
+
 class DirStoreTest : public testing::Test {
  protected:
   fs::path root() const { return folder_.path() / "deep" / "store"; }
@@ -68,6 +85,34 @@ TEST_F(DirStoreTest, ATruncatedBlobIsFound) {
     write_file(object("t/a"), good.substr(0, size));
     EXPECT_EQ(store->get("t/a").error().code, ErrorCode::malformed_input) << size;
   }
+}
+
+TEST_F(DirStoreTest, PutAndCommitFlushTheFileThenRenameThenFlushTheWayToIt) {
+  RecordingCalls calls;
+  const auto store = open_dir_store(root(), calls).value();
+  calls.log.clear();
+  ASSERT_TRUE(store->put("t/a/b", bytes_of("first in its folder")));
+  EXPECT_EQ(calls.log, "flush staged; rename b; flush a; flush t; flush objects; ");
+  calls.log.clear();
+  ASSERT_TRUE(store->commit(store->stage().value(), "t/a/c"));
+  EXPECT_EQ(calls.log, "flush staged; rename c; flush a; ");
+  calls.log.clear();
+  ASSERT_TRUE(store->put("t/d/e", bytes_of("in a new folder of a known one")));
+  EXPECT_EQ(calls.log, "flush staged; rename e; flush d; flush t; ");
+  calls.log.clear();
+  ASSERT_TRUE(store->remove("t/d/e"));
+  EXPECT_EQ(calls.log, "flush t; ");
+}
+
+TEST_F(DirStoreTest, AFolderThatOthersMadeAgainIsFlushedAsNew) {
+  RecordingCalls calls;
+  const auto store = open_dir_store(root(), calls).value();
+  ASSERT_TRUE(store->put("t/a/b", bytes_of("x")));
+  ASSERT_TRUE(open()->remove("t/a/b"));
+  ASSERT_TRUE(open()->put("t/a/c", bytes_of("x")));
+  calls.log.clear();
+  ASSERT_TRUE(store->put("t/a/d", bytes_of("x")));
+  EXPECT_EQ(calls.log, "flush staged; rename d; flush a; flush t; flush objects; ");
 }
 
 TEST_F(DirStoreTest, AStartRemovesTheStagingOfDeadProcessesOnly) {

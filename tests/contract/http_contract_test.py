@@ -67,7 +67,7 @@ def seismic_line(traces, samples):
 
 
 def two_grids(lines, traces, samples):
-    """A SEG-Y file with good inline and crossline numbers at two pairs of bytes, 189/193 and 5/21, of unlike grids."""
+    """A SEG-Y file whose trace headers number two grids, at the bytes 189 and 193 and at 5 and 21."""
     binary = bytearray(400)
     struct.pack_into(">h", binary, 16, 4000)
     struct.pack_into(">h", binary, 20, samples)

@@ -1,5 +1,5 @@
 import {
-  AmbientLight, Color, DirectionalLight, Group, HemisphereLight, PerspectiveCamera, Scene, Spherical, Vector3, WebGLRenderer,
+  Color, DirectionalLight, Group, HemisphereLight, PerspectiveCamera, Scene, Spherical, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 
@@ -49,7 +49,7 @@ export class Stage {
   }
 
   resetView() {
-    const distance = (0.78 * this.#radius) / Math.sin((FIELD_OF_VIEW * Math.PI) / 360) / Math.min(1, 1.15 * this.#camera.aspect);
+    const distance = (0.82 * this.#radius) / Math.sin((FIELD_OF_VIEW * Math.PI) / 360) / Math.min(1, 0.95 * this.#camera.aspect);
     this.#camera.near = distance / 200;
     this.#camera.far = distance * 20;
     this.#camera.position.set(-0.52, 0.62, 0.78).setLength(distance);
@@ -72,10 +72,10 @@ export class Stage {
 
   /** Sky and ground light for the slopes, and a lamp that goes with the eye for the rest. */
   #addLights() {
-    const lamp = new DirectionalLight(0xffffff, 1.9);
-    lamp.position.set(-0.6, 0.8, 0.6);
+    const lamp = new DirectionalLight(0xffffff, 2.6);
+    lamp.position.set(-0.9, 0.9, 0.4);
     this.#camera.add(lamp);
-    this.#scene.add(new HemisphereLight(0xf4f7ff, 0x8a7a66, 1.1), new AmbientLight(0xffffff, 0.15));
+    this.#scene.add(new HemisphereLight(0xf4f7ff, 0x6f665c, 1.1));
   }
 
   #resize() {

@@ -93,7 +93,7 @@ int FileCalls::list_folder(const char* path, std::vector<FolderEntry>& entries) 
   if (!folder) return -1;
   while (true) {
     errno = 0;
-    const dirent* entry = ::readdir(folder.get());
+    const dirent* entry = ::readdir(folder.get());  // NOLINT(concurrency-mt-unsafe): the stream is this call's own
     if (!entry) return errno == 0 ? 0 : -1;
     const std::string_view name = entry->d_name;
     if (name == "." || name == "..") continue;

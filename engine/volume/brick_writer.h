@@ -24,7 +24,7 @@ namespace geosis {
 class BrickWriter {
  public:
   /// Reserves the whole file. path: where it appears when it is finished, replacing what is there; std::nullopt = an
-  /// unnamed temporary file. errors: invalid_argument, limit_exceeded (axes, no space), unavailable.
+  /// unnamed temporary file. errors: invalid_argument, limit_exceeded (axes), no_space, unavailable.
   static Result<BrickWriter> create(GridShape shape, const std::optional<std::filesystem::path>& path);
 
   BrickWriter(BrickWriter&&) noexcept = default;

@@ -16,7 +16,7 @@ class MappedFile {
   /// Read-only. errors: not_found, unavailable; malformed_input: empty or not a regular file.
   static Result<std::unique_ptr<MappedFile>> open(const std::filesystem::path& path);
   /// A new file of `bytes` zeros at `path`, which must not exist yet, readable and writable. The space is reserved, so
-  /// that no later write through the mapping can fail. errors: limit_exceeded (no space), unavailable.
+  /// that no later write through the mapping can fail. errors: no_space, unavailable.
   static Result<std::unique_ptr<MappedFile>> create(const std::filesystem::path& path, std::uint64_t bytes);
   /// The same without a name, in the system's folder for temporary files.
   static Result<std::unique_ptr<MappedFile>> create_unnamed(std::uint64_t bytes);

@@ -138,7 +138,7 @@ class OutputFile {
   Error failure(const char* doing) const {
     const int number = errno;
     return {
-        number == ENOSPC || number == EDQUOT || number == EFBIG ? ErrorCode::limit_exceeded : ErrorCode::unavailable,
+        number == ENOSPC || number == EDQUOT || number == EFBIG ? ErrorCode::no_space : ErrorCode::unavailable,
         std::string("cannot ") + doing + " " + path_.string() + ": " + std::generic_category().message(number)};
   }
 

@@ -36,7 +36,7 @@ using TraceMask = std::function<bool(std::int32_t i, std::int32_t j)>;
 /// a
 ///          whole number of microseconds below 65536, a delay that is not a whole number of milliseconds, survey
 ///          numbers that are not whole, coordinates beyond 32 bits, text too long).  unavailable: the file cannot be
-///          written. limit_exceeded: no space left.  cancelled.
+///          written. no_space.  cancelled.
 Result<void> write_segy(const std::filesystem::path& path, const SegySurvey& survey, const TraceSamples& samples,
                         const TraceMask& is_live, Progress& progress);
 

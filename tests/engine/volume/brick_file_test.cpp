@@ -181,7 +181,7 @@ TEST(BrickFile, ReportsAFullDiskBeforeWriting) {
   // 2^17 x 2^17 x 2^17 samples: 9 PB, more than a file may have.
   const auto too_big = BrickWriter::create({kMaxAxisNodes, kMaxAxisNodes, kMaxAxisNodes}, folder / "volume");
   ASSERT_FALSE(too_big);
-  EXPECT_EQ(too_big.error().code, ErrorCode::limit_exceeded) << too_big.error().message;
+  EXPECT_EQ(too_big.error().code, ErrorCode::no_space) << too_big.error().message;
   EXPECT_TRUE(folder.is_empty());
 }
 

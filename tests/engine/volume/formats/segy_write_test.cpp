@@ -91,7 +91,7 @@ TEST(WriteSegy, SaysSoWhenTheFileCannotBeWritten) {
   const auto nowhere = write_segy("/nonexistent/survey.sgy", turned_survey(), fill, {}, unwatched);
   EXPECT_EQ(nowhere.error().code, ErrorCode::unavailable);
   const auto full = write_segy("/dev/full", turned_survey(), fill, {}, unwatched);
-  EXPECT_EQ(full.error().code, ErrorCode::limit_exceeded) << full.error().message;
+  EXPECT_EQ(full.error().code, ErrorCode::no_space) << full.error().message;
 }
 
 }  // namespace

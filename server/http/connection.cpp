@@ -197,12 +197,11 @@ void Connection::write() {
       writer_.reset();
       return closes_ ? linger() : next_request();
     case ReplyWriter::Outcome::blocked:
+    case ReplyWriter::Outcome::more:  // the socket may be full by now as well
       blocked_since_ = Clock::now();
       return;
     case ReplyWriter::Outcome::waiting:
       state_ = State::waiting;
-      return;
-    case ReplyWriter::Outcome::more:
       return;
     case ReplyWriter::Outcome::broken:
       return finish();

@@ -14,8 +14,8 @@ namespace geosis::server::http {
 
 struct FrontOptions {
   std::string listen = "127.0.0.1:8080";  ///< "host:port"; port 0 = any that is free
-  Limits limits;
-  CorsOptions cors;
+  Limits limits = {};
+  CorsOptions cors = {};
   std::size_t handler_threads = 8;
   std::size_t queued_requests = 256;  ///< that wait for a handler's thread; more are answered 503
   std::size_t upload_threads = 8;     ///< uploads at one time; more are answered 503

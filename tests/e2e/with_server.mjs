@@ -8,13 +8,15 @@ import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { createInterface } from 'node:readline';
+import { fileURLToPath } from 'node:url';
 
 const GEOSIS = process.env.GEOSIS;
+const PAGE = fileURLToPath(new URL('../../viewer/dist', import.meta.url));
 const folder = mkdtempSync(join(tmpdir(), 'geosis-e2e-'));
 
 async function startServer() {
-  const server = spawn(GEOSIS, ['serve', '--listen', '127.0.0.1:0', '--store', join(folder, 'store')],
-    { stdio: ['ignore', 'pipe', 'inherit'] });
+  const flags = ['--listen', '127.0.0.1:0', '--store', join(folder, 'store'), '--page', PAGE];
+  const server = spawn(GEOSIS, ['serve', ...flags], { stdio: ['ignore', 'pipe', 'inherit'] });
   const lines = createInterface({ input: server.stdout });
   const [line] = await Promise.race([once(lines, 'line'), once(server, 'exit')]);
   const url = /^listening on (http:\S+)/.exec(line)?.[1];

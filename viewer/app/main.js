@@ -241,6 +241,8 @@ async function begin() {
   await openSurvey(first, rangeFromText(address.get('range')));
 }
 
+// Work that nobody will see is not worth doing; finished results stay where they are.
+addEventListener('pagehide', () => reconstruction.stop());
 listenToForm();
 listenToTools();
 listenToDrops();

@@ -70,11 +70,11 @@ export class GeosisApi {
     const reader = new MultipartReader(boundary);
     const body = answer.body.getReader();
     for (;;) {
-      const { value, done } = await body.read();
+      const { value, done } = await body.read().catch(cutShort);
       if (done) break;
       for (const part of reader.push(value)) yield streamItem(part);
     }
-    if (!reader.finished) throw new Problem({ detail: 'The stream of levels was cut short.', code: 'unavailable' });
+    if (!reader.finished) cutShort();
   }
 
   #url(path) {
@@ -97,6 +97,12 @@ export class GeosisApi {
     if (!answer.ok) throw problemFromText(answer.status, await answer.text());
     return answer;
   }
+}
+
+/** What ends a stream early: the reader's own abort, or a server that stopped in the middle. */
+function cutShort(error) {
+  if (error?.name === 'AbortError') throw error;
+  throw new Problem({ detail: 'The stream of levels was cut short.', code: 'unavailable' });
 }
 
 function streamItem({ headers, body }) {

@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import { describe, it } from 'node:test';
 
+import { GeosisApi } from '../core/api.js';
 import {
   describe as sentenceOf, failed, idle, levelKnown, levelShown, manifestCame, progressed, started,
 } from '../core/extraction_state.js';
@@ -153,6 +154,37 @@ describe('problemFromText', () => {
   it('survives what is not a problem document', () => {
     assert.match(problemFromText(502, '<html>').message, /502/);
     assert.match(problemFromText(500, 'null').message, /500/);
+  });
+});
+
+describe('GeosisApi.stream', () => {
+  const collect = async (chunks, type = 'multipart/mixed; boundary=b') => {
+    const body = new ReadableStream({ start: (controller) => chunks(controller, new TextEncoder()) });
+    const api = new GeosisApi('', async () => new Response(body, { headers: { 'Content-Type': type } }));
+    const items = [];
+    for await (const item of api.stream('id')) items.push(item);
+    return items;
+  };
+
+  it('gives the parts and the manifest', async () => {
+    const items = await collect((stream, encoder) => {
+      stream.enqueue(encoder.encode('--b\r\nX-Geosis-Level: 2\r\nX-Geosis-Part: 1\r\nX-Geosis-Parts: 3\r\n\r\nmesh'));
+      stream.enqueue(encoder.encode('\r\n--b\r\nContent-Type: application/json\r\n\r\n{"levels":[]}\r\n--b--'));
+      stream.close();
+    });
+    assert.deepEqual(items.map(({ bytes, ...rest }) => rest), [
+      { kind: 'part', level: 2, part: 1, count: 3 },
+      { kind: 'manifest', manifest: { levels: [] } },
+    ]);
+  });
+
+  it('says that it was cut short, whether it ends or breaks', async () => {
+    await assert.rejects(collect((stream) => stream.close()), /cut short/);
+    await assert.rejects(collect((stream) => stream.error(new TypeError('terminated'))), /cut short/);
+  });
+
+  it('refuses an answer that is not multipart', async () => {
+    await assert.rejects(collect((stream) => stream.close(), 'text/plain'), /not multipart/);
   });
 });
 

@@ -12,9 +12,16 @@ in_root() {
 }
 
 mmdebstrap --quiet --variant=minbase bookworm "$root"
+# What this machine trusts beside Debian's certificates, the root trusts as well: a proxy's authority, for example.
+mkdir -p "$root/usr/local/share/ca-certificates"
+find /usr/local/share/ca-certificates -name '*.crt' -exec cp {} "$root/usr/local/share/ca-certificates/" \;
+mount -t proc proc "$root/proc"
+mount --rbind /dev "$root/dev"
+mount --make-rslave "$root/dev"
+trap 'umount -R "$root/proc" "$root/dev"; rm -rf --one-file-system "$root"' EXIT
 git clone --quiet --no-hardlinks . "$root/geosis"
 network=()
 time in_root /geosis/run --once
-network=(unshare --net)
+network=(unshare --net sh -c 'ip link set lo up 2>/dev/null; exec "$@"' sh)
 time in_root /geosis/run --once
 time in_root /geosis/.ci/run

@@ -6,18 +6,21 @@ fail() {
   exit 1
 }
 
+# A line of a list is a package, or a package and a command that makes it unnecessary, wherever that comes from.
 missing_packages() {
-  local package
-  grep -Ev '^ *(#|$)' .ci/packages | while read -r package; do
+  local package command
+  grep -Ehv '^ *(#|$)' "$@" | while read -r package command; do
+    [ -n "$command" ] && command -v "$command" >/dev/null && continue
     dpkg-query --show --showformat='${db:Status-Status}\n' "$package" 2>/dev/null | grep -qx installed || echo "$package"
   done
 }
 
-# Installs what .ci/packages lists and this machine lacks. Without anything missing it needs no network.
+# install_packages LIST...: installs what the lists name and this machine lacks. Without anything missing it needs no
+# network.
 install_packages() {
-  command -v dpkg-query >/dev/null || fail "this is not Debian: install what .ci/packages lists, then use cmake --preset release"
+  command -v dpkg-query >/dev/null || fail "this is not Debian: install what $* lists, then use cmake --preset release"
   local missing as_root=()
-  missing=$(missing_packages)
+  missing=$(missing_packages "$@")
   [ -n "$missing" ] || return 0
   echo "Installing missing Debian packages:" $missing
   if [ "$(id -u)" -ne 0 ]; then
@@ -26,6 +29,21 @@ install_packages() {
   fi
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -q
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $missing
+}
+
+# Fetches the page's packages as the lock file says and bundles it, if it is not newer than its sources.
+build_page() {
+  local newer
+  newer=$(find viewer -path viewer/node_modules -prune -o -path viewer/dist -prune -o \
+    -type f -newer viewer/dist/index.html -print -quit 2>/dev/null || true)
+  [ -e viewer/dist/index.html ] && [ -z "$newer" ] && return
+  echo "Building the page in viewer/dist"
+  local log=build/page.log
+  mkdir -p build
+  if ! (cd viewer && npm ci --no-audit --no-fund && npm run build) >"$log" 2>&1; then
+    cat "$log" >&2
+    fail "building the page failed"
+  fi
 }
 
 # build TARGET...: configures and builds build/release; says nothing of the steps unless one fails.

@@ -44,9 +44,9 @@ const char* media_type(const std::string& extension) {
   return found == types.end() ? "application/octet-stream" : found->second;
 }
 
-/// A pattern that matches this name alone.
+/// The pattern of a path that is this name alone.
 std::string pattern_of(const std::string& name) {
-  std::string pattern;
+  std::string pattern = "/";
   for (const char c : name) {
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '/' && c != '-' && c != '_') pattern += '\\';
     pattern += c;
@@ -78,7 +78,7 @@ void add_service_routes(Router& router, Services services, const std::filesystem
     const std::string type = media_type(std::filesystem::path(name).extension().string());
     const auto serve = [type, content](const Request&) { return text_reply(type.c_str(), content); };
     if (name == "index.html") router.get("/", serve);
-    router.get("/" + pattern_of(name), serve);
+    router.get(pattern_of(name), serve);
   }
   if (!std::filesystem::exists(page / "index.html")) {
     router.get("/", [](const Request&) {

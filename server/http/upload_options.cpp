@@ -13,7 +13,10 @@ std::string option_text(const Json& value) {
   if (value.is_string()) return value.get<std::string>();
   if (!value.is_array()) return value.dump();
   std::string text;
-  for (const Json& element : value) text += (text.empty() ? "" : ",") + element.dump();
+  for (const Json& element : value) {
+    if (!text.empty()) text += ',';
+    text += element.dump();
+  }
   return text;
 }
 

@@ -40,6 +40,10 @@ JobQueue::JobQueue(int workers, std::size_t capacity) : capacity_(capacity) {
 }
 
 JobQueue::~JobQueue() {
+  stop();
+}
+
+void JobQueue::stop() {
   {
     const std::lock_guard lock(mutex_);
     is_draining_ = true;

@@ -30,8 +30,7 @@ class JobQueue {
   JobQueue(int workers, std::size_t capacity);
   JobQueue(const JobQueue&) = delete;
   JobQueue& operator=(const JobQueue&) = delete;
-  /// Cancels what is queued or running and waits for it.
-  ~JobQueue();
+  ~JobQueue();  ///< stops
 
   /// A job that ran is final only after its work has been destroyed with all that it holds.
   ///
@@ -39,6 +38,9 @@ class JobQueue {
   Result<std::shared_ptr<Job>> submit(Priority priority, Work work);
   /// Takes nothing new and returns when all is done or the time is over; what still runs then is cancelled.
   void drain(std::chrono::milliseconds grace);
+  /// Takes nothing new, cancels what is queued or running and waits for it. Whatever the work uses must live until
+  /// then. May be called twice, but not by two threads at once.
+  void stop();
   /// Jobs that wait.
   std::size_t depth() const;
 

@@ -57,8 +57,9 @@ class StopSignals {
   sigset_t set_{};
 };
 
-/// Until everything has finished, the time is over, or a second signal comes.
-void drain(http::Front& front, StopSignals& signals, std::chrono::milliseconds grace) {
+/// Lets everything finish, until the time is over or a second signal comes; then stops the work, for which handlers may
+/// wait, and the front.
+void drain_and_stop(http::Front& front, JobQueue& queue, StopSignals& signals, std::chrono::milliseconds grace) {
   std::atomic<bool> is_drained{false};
   std::jthread draining([&] {
     front.drain(grace);
@@ -66,6 +67,7 @@ void drain(http::Front& front, StopSignals& signals, std::chrono::milliseconds g
   });
   while (!is_drained && !signals.wait_for(std::chrono::milliseconds(50))) {
   }
+  queue.stop();
   front.stop();
 }
 
@@ -104,8 +106,7 @@ Result<void> serve(const ServeOptions& options) {
 
   signals.wait();
   std::fprintf(stderr, "geosis: finishing what runs; a second signal stops at once\n");
-  drain(**front, signals, options.drain);
-  queue.drain(std::chrono::milliseconds(0));  // whoever still waits for work has been answered or is gone
+  drain_and_stop(**front, queue, signals, options.drain);
   return {};
 }
 

@@ -23,6 +23,8 @@ struct Service {
         queue(workers, 16),
         extractions(blobs, volumes, queue, "default", 1, std::move(reconstruct)) {}
 
+  ~Service() { queue.stop(); }
+
   /// Uploads a ball; its volume id.
   std::string add_ball(double radius = 7);
 

@@ -33,7 +33,8 @@ class Welder {
     // remaining ones only, so going from the last axis to the first finds every number settled.
     for (int axis = 2; axis >= 0; --axis) each_brick([&](std::size_t n) { number_upper_layer(n, axis); });
     if (inconsistent_) {
-      return Error{ErrorCode::malformed_input, "bricks disagree on a layer that they share: the volume's index is damaged"};
+      return Error{ErrorCode::malformed_input,
+                   "bricks disagree on a layer that they share: the volume's index is damaged"};
     }
     each_brick([&](std::size_t n) { copy(n); });
     return std::move(welded_);

@@ -16,9 +16,7 @@ namespace {
 
 Error failed(const std::string& what, const std::filesystem::path& where, int number) {
   const bool full = number == ENOSPC || number == EDQUOT || number == EFBIG;
-  const ErrorCode code = full               ? ErrorCode::no_space
-                         : number == ENOENT ? ErrorCode::not_found
-                                            : ErrorCode::unavailable;
+  const ErrorCode code = full ? ErrorCode::no_space : number == ENOENT ? ErrorCode::not_found : ErrorCode::unavailable;
   return {code, what + " " + where.string() + ": " + std::generic_category().message(number)};
 }
 

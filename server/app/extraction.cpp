@@ -109,6 +109,11 @@ void Extraction::cancel() {
   if (job) job->request_cancel();
 }
 
+bool Extraction::is_ending() const {
+  const std::lock_guard lock(mutex_);
+  return cancelled_ || (job_ && job_->cancelled() && !manifest_);
+}
+
 Json resource_document(const Extraction& extraction) {
   const auto& identity = extraction.identity();
   const Extraction::Snapshot now = extraction.snapshot();

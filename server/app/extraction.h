@@ -62,6 +62,8 @@ class Extraction {
   /// True when none is left and the work has not ended: the caller makes it durable and calls cancel().
   bool withdraw_interest();
   void cancel();
+  /// Its cancellation was asked for and it has no result: it ends, or has ended, as cancelled.
+  bool is_ending() const;
 
  private:
   const Identity identity_;

@@ -33,9 +33,23 @@ std::span<const std::byte> bytes_of(const std::string& text) {
   return std::as_bytes(std::span(text));
 }
 
-bool has_ended_without_result(const Extraction& extraction) {
+/// Failed, cancelled, or about to be: another POST starts anew.
+bool ends_without_result(const Extraction& extraction) {
   const JobState state = extraction.snapshot().state;
-  return state == JobState::failed || state == JobState::cancelled;
+  return state == JobState::failed || state == JobState::cancelled || extraction.is_ending();
+}
+
+/// The region must lie in the volume: what cannot be computed is refused before anything is recorded.
+Result<void> check_region(const std::optional<GridBox>& region, GridShape shape) {
+  constexpr const char* kAxes[] = {"inline", "crossline", "sample"};
+  for (int axis = 0; region && axis < 3; ++axis) {
+    if (region->last[axis] < shape[axis]) continue;
+    return Error{ErrorCode::invalid_argument, "request /region/" + std::string(kAxes[axis]) + ": [" +
+                                                  std::to_string(region->first[axis]) + "," +
+                                                  std::to_string(region->last[axis]) + "]; the volume has nodes 0 to " +
+                                                  std::to_string(shape[axis] - 1)};
+  }
+  return {};
 }
 
 /// The parts of a transient extraction, kept in memory.
@@ -110,7 +124,9 @@ Result<std::shared_ptr<Extraction>> Extractions::create(const std::string& volum
   if (!stored) return stored.error();
   auto options = parse_request(request);
   if (!options) return std::move(options).error();
-  Json canonical = request_document(*options, (*stored)->summary.shape);
+  const GridShape shape = (*stored)->summary.shape;
+  if (auto inside = check_region(options->region, shape); !inside) return std::move(inside).error();
+  Json canonical = request_document(*options, shape);
   const std::string id = extraction_id(volume, canonical, kResultVersion);
 
   const auto entry = entry_of(id);
@@ -119,7 +135,7 @@ Result<std::shared_ptr<Extraction>> Extractions::create(const std::string& volum
     auto loaded = load(*entry, id);
     if (!loaded && loaded.error().code != ErrorCode::not_found) return loaded;
   }
-  if (!entry->extraction || has_ended_without_result(*entry->extraction)) {
+  if (!entry->extraction || ends_without_result(*entry->extraction)) {
     auto started = record_and_start(*entry, {id, volume, timestamp(), std::move(canonical)}, priority);
     if (!started) return started;
   }
@@ -186,6 +202,7 @@ Result<std::shared_ptr<Extraction>> Extractions::create_transient(const ByteSour
   const auto volume = std::make_shared<const ImportedVolume>(*std::move(imported));
   const auto shelf = std::make_shared<PartShelf>();
   const VolumeSummary summary = summarize(volume->description);
+  if (auto inside = check_region(options->region, summary.shape); !inside) return std::move(inside).error();
   Json canonical = request_document(*options, summary.shape);
   const std::string id = extraction_id(summary.id, canonical, kResultVersion);
   auto extraction =

@@ -28,8 +28,8 @@ struct LevelFile {
   std::string transform;  ///< 16 numbers, for drc
 };
 
-/// Use cases around extractions, without any transport. Any thread may call any member. The queue must have stopped before
-/// this object goes.
+/// Use cases around extractions, without any transport. Any thread may call any member. The queue must have stopped
+/// before this object goes.
 ///
 /// Stored under <tenant>/extractions/<id>/: `request.json` (before anything is acknowledged),
 /// `parts/<level>.<part>.drc`, `levels/<level>.<format>` with a description beside it (whole files, made on first

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "server/app/errors.h"
+#include "server/app/problem.h"
 #include "server/http/reply_head.h"
 
 namespace geosis::server::http {
@@ -11,22 +12,9 @@ namespace {
 
 constexpr const char* kRetryAfterSeconds = "1";
 
-/// The JSON pointer that a message about a document names before its colon, and what it says after it.
-struct Located {
-  std::string pointer, detail;
-};
-
-Located locate(const std::string& message) {
-  constexpr std::string_view kDocument = "request ";
-  const std::size_t start = message.compare(0, kDocument.size(), kDocument) == 0 ? kDocument.size() : 0;
-  const std::size_t colon = message.find(": ", start);
-  if (colon == std::string::npos || message[start] != '/') return {{}, message};
-  return {message.substr(start, colon - start), message.substr(colon + 2)};
-}
-
-Json problem_document(int status, const char* title, ErrorCode code, const std::string& detail) {
+Json refusal_document(int status, ErrorCode code, const std::string& detail) {
   return {{"type", std::string("urn:geosis:problem:") + name_of(code)},
-          {"title", title},
+          {"title", status_phrase(status)},
           {"status", status},
           {"detail", detail},
           {"code", name_of(code)}};
@@ -71,17 +59,14 @@ ErrorCode code_of(int status) {
 }  // namespace
 
 Reply error_reply(const Error& error, const Json& more) {
-  const ErrorNumbers& numbers = numbers_of(error.code);
-  const Located located = locate(error.message);
-  Json document = problem_document(numbers.http_status, numbers.title, error.code, located.detail);
-  if (!located.pointer.empty()) document["pointer"] = located.pointer;
+  Json document = problem_document(error);
   document.update(more);
-  return problem_reply(numbers.http_status, document);
+  return problem_reply(numbers_of(error.code).http_status, document);
 }
 
 Reply refusal_reply(const Refusal& refusal) {
   const int status = refusal.status;
-  return problem_reply(status, problem_document(status, status_phrase(status), code_of(status), refusal.detail));
+  return problem_reply(status, refusal_document(status, code_of(status), refusal.detail));
 }
 
 }  // namespace geosis::server::http

@@ -37,6 +37,7 @@ Reply level_stream_reply(std::shared_ptr<Extraction> extraction, std::function<v
 
 Reply create(Services services, const Request& request) {
   if (auto known = only_parameters(request, {}); !known) return error_reply(known.error());
+  if (!has_json_body(request)) return not_json();
   const auto wanted = parse_json(request.body);
   if (!wanted) return error_reply({ErrorCode::invalid_argument, "request body: " + wanted.error().message});
   const auto extraction = services.extractions.create(request.captures[0], *wanted, priority_of(request));
@@ -45,7 +46,10 @@ Reply create(Services services, const Request& request) {
   if (accepts(request, kMultipart)) {
     return level_stream_reply(*extraction, [services, id] { (void)services.extractions.withdraw(id); });
   }
-  if (const auto wait = preference(request).wait_seconds) (*extraction)->wait_for(std::chrono::seconds(*wait));
+  if (const auto wait = preference(request).wait_seconds) {
+    // A preference: when too many wait already, the answer comes at once.
+    if (const auto seat = services.waiting.take()) (*extraction)->wait_for(std::chrono::seconds(*wait));
+  }
   const bool is_done = (*extraction)->snapshot().state == JobState::done;
   Reply reply = json_reply(is_done ? 200 : 202, resource_document(**extraction));
   reply.headers.emplace_back("Location", "/v1/extractions/" + id);
@@ -114,6 +118,8 @@ Reply level(Services services, const Request& request) {
   const auto extraction = services.extractions.find(id);
   if (!extraction) return error_reply(extraction.error());
   if (!(*extraction)->snapshot().manifest) return not_done(**extraction);
+  const auto seat = services.waiting.take();  // it may have to be made first
+  if (!seat) return error_reply({ErrorCode::unavailable, "too many requests wait for results"});
   const LevelFormat wanted = format == "drc" ? LevelFormat::drc : format == "ply" ? LevelFormat::ply : LevelFormat::obj;
   const char* const type = format == "drc" ? "model/vnd.google.draco" : format == "ply" ? "model/ply" : "model/obj";
   auto file = services.extractions.level(id, small_number(request.captures[1]), wanted);

@@ -56,6 +56,7 @@ Reply get(Services services, const Request& request) {
 }
 
 Reply change(Services services, const Request& request) {
+  if (!has_json_body(request)) return not_json();
   const auto changes = parse_json(request.body);
   if (!changes) return error_reply({ErrorCode::invalid_argument, "request body: " + changes.error().message});
   const auto document = services.volumes.change(request.captures[0], *changes);
@@ -77,7 +78,7 @@ Reply histogram(Services services, const Request& request) {
   const auto bins = whole_parameter(request, "bins", 256, 1, kMaxHistogramBins);
   if (!bins) return error_reply(bins.error());
   Histogram counted;
-  const auto done = run_on_worker(services.queue, [&](Job& job) -> Result<void> {
+  const auto done = run_on_worker(services, [&](Job& job) -> Result<void> {
     auto result = services.volumes.histogram(request.captures[0], static_cast<int>(*bins), job);
     if (!result) return std::move(result).error();
     counted = *std::move(result);

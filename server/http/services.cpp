@@ -5,8 +5,10 @@
 
 namespace geosis::server::http {
 
-Result<void> run_on_worker(JobQueue& queue, const JobQueue::Work& work) {
-  auto job = queue.submit(Priority::interactive, work);
+Result<void> run_on_worker(Services services, const JobQueue::Work& work) {
+  const auto seat = services.waiting.take();
+  if (!seat) return Error{ErrorCode::unavailable, "too many requests wait for results"};
+  auto job = services.queue.submit(Priority::interactive, work);
   if (!job) return std::move(job).error();
   while (!(*job)->wait_for(std::chrono::hours(1))) {
   }

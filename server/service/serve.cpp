@@ -19,6 +19,9 @@ namespace geosis::server {
 namespace {
 
 constexpr const char* kTenant = "default";
+/// Handlers' threads, and how many of them may wait for results at one time.
+constexpr std::size_t kHandlerThreads = 40;
+constexpr int kWaitingSeats = 32;
 
 bool is_loopback(std::string_view listen) {
   return listen.starts_with("127.") || listen.starts_with("localhost:") || listen.starts_with("[::1]:");
@@ -76,6 +79,7 @@ http::FrontOptions front_options(const ServeOptions& options) {
   front.listen = options.listen;
   front.limits.upload_bytes = options.max_body_bytes;
   front.cors.origins = options.cors_origins;
+  front.handler_threads = kHandlerThreads;
   return front;
 }
 
@@ -95,7 +99,8 @@ Result<void> serve(const ServeOptions& options) {
   Extractions extractions(**store, volumes, queue, kTenant, options.threads);
 
   http::Router router;
-  const http::Services services{**store, volumes, extractions, queue};
+  http::WaitingRoom waiting(kWaitingSeats);
+  const http::Services services{**store, volumes, extractions, queue, waiting};
   http::add_volume_routes(router, services);
   http::add_extraction_routes(router, services);
   http::add_service_routes(router, services, options.page);

@@ -95,7 +95,8 @@ struct ImportedVolume {
 ///              no_coordinates, no_valid_samples, sample_count, sample_interval, trace_sample_count.
 ///
 /// candidates   when not null: filled with the grids found when the header bytes are ambiguous or absent.
-/// errors       malformed_input, unsupported (2D line, prestack, ...), invalid_argument (options), limit_exceeded, no_space,
+/// errors       malformed_input, unsupported (2D line, prestack, ...), invalid_argument (options), limit_exceeded,
+/// no_space,
 ///              unavailable, cancelled.
 Result<ImportedVolume> import_volume(const ByteSource& source, const ImportOptions& options,
                                      const std::optional<std::filesystem::path>& brick_file, Progress& progress,

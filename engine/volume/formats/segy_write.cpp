@@ -137,9 +137,8 @@ class OutputFile {
   OutputFile(std::filesystem::path path, std::FILE* stream) : path_(std::move(path)), stream_(stream) {}
   Error failure(const char* doing) const {
     const int number = errno;
-    return {
-        number == ENOSPC || number == EDQUOT || number == EFBIG ? ErrorCode::no_space : ErrorCode::unavailable,
-        std::string("cannot ") + doing + " " + path_.string() + ": " + std::generic_category().message(number)};
+    return {number == ENOSPC || number == EDQUOT || number == EFBIG ? ErrorCode::no_space : ErrorCode::unavailable,
+            std::string("cannot ") + doing + " " + path_.string() + ": " + std::generic_category().message(number)};
   }
 
   std::filesystem::path path_;

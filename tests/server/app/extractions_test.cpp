@@ -143,6 +143,26 @@ TEST_F(ExtractionsTest, StopsWhenTheLastInterestIsWithdrawn) {
   EXPECT_EQ((*again)->snapshot().state, JobState::done);
 }
 
+TEST_F(ExtractionsTest, AskedForAgainWhileItStopsItStartsAnew) {
+  std::atomic<int> runs{0};
+  std::atomic<bool> may_end{false};
+  Service service(*store, [&](auto&&... arguments) -> Result<Reconstruction> {
+    if (runs++ > 0) return reconstruct(arguments...);
+    while (!may_end) std::this_thread::sleep_for(1ms);  // slow to notice that nobody wants it
+    return Error{ErrorCode::cancelled, "stopped"};
+  });
+  const std::string volume = service.add_ball();
+  const auto first = service.extractions.create(volume, ball_request(), Priority::interactive);
+  ASSERT_TRUE(first);
+  ASSERT_TRUE(comes_true([&] { return runs > 0; }));
+  ASSERT_TRUE(service.extractions.withdraw((*first)->identity().id));
+  const auto second = service.extractions.create(volume, ball_request(), Priority::interactive);
+  ASSERT_TRUE(second);
+  may_end = true;
+  (*second)->wait_for(30s);
+  EXPECT_EQ((*second)->snapshot().state, JobState::done);
+}
+
 TEST_F(ExtractionsTest, FailedOneStartsAgain) {
   std::atomic<bool> fails{true};
   Service service(*store, [&](auto&&... arguments) -> Result<Reconstruction> {
@@ -235,6 +255,13 @@ TEST_F(ExtractionsTest, RefusesWhatCannotBe) {
             ErrorCode::not_found);
   EXPECT_EQ(service.extractions.create(volume, Json::object(), Priority::interactive).error().code,
             ErrorCode::invalid_argument);
+  const Json outside = {{"range", {0, nullptr}},
+                        {"region", {{"inline", {0, 20}}, {"crossline", {0, 19}}, {"sample", {0, 19}}}}};
+  const auto refused = service.extractions.create(volume, outside, Priority::interactive);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::invalid_argument);
+  EXPECT_TRUE(refused.error().message.starts_with("request /region/inline: ")) << refused.error().message;
+  EXPECT_TRUE(store->list("default/extractions/", "", 10)->empty());
   EXPECT_EQ(service.extractions.find(std::string(64, 'b')).error().code, ErrorCode::not_found);
   EXPECT_EQ(service.extractions.find("../x").error().code, ErrorCode::not_found);
 }

@@ -24,4 +24,5 @@ network=()
 time in_root /geosis/run --once
 network=(unshare --net sh -c 'ip link set lo up 2>/dev/null; exec "$@"' sh)
 time in_root /geosis/run --once
+network=()
 time in_root /geosis/.ci/run

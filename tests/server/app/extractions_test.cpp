@@ -113,6 +113,17 @@ TEST_F(ExtractionsTest, CoarsestLevelIsReadableWhileTheFinestIsNotEncoded) {
   EXPECT_TRUE(service.extractions.part((*extraction)->identity().id, 4, 0));
   EXPECT_EQ(service.extractions.level((*extraction)->identity().id, 4, LevelFormat::drc).error().code,
             ErrorCode::already_exists);
+  const auto stream = level_stream(*extraction, "edge", {});
+  std::string left;
+  std::byte piece[1000];
+  for (;;) {
+    const auto pulled = stream->pull(piece);
+    ASSERT_TRUE(pulled);
+    if (pulled->state != ByteStream::Pulled::State::data) break;
+    left.append(reinterpret_cast<const char*>(piece), pulled->count);
+  }
+  EXPECT_NE(left.find("X-Geosis-Level: 4"), std::string::npos);
+  EXPECT_EQ(left.find("X-Geosis-Level: 3"), std::string::npos);
   gate.open();
   (*extraction)->wait_for(30s);
   EXPECT_EQ((*extraction)->snapshot().state, JobState::done);

@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <cstdio>
 #include <new>
 #include <utility>
 #include <vector>
 
 #include "server/cli/commands.h"
+#include "server/cli/environment.h"
 
 namespace geosis::server {
 namespace {
@@ -48,7 +50,9 @@ int run_command_line(int argc, const char* const* argv, std::vector<AddCommand> 
     commands.emplace_back(app.get_subcommands({}).back(), std::move(command));
   }
   try {
-    app.parse(argc, argv);
+    auto arguments = with_environment(app, {argv + std::min(argc, 1), argv + argc});
+    std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back
+    app.parse(std::move(arguments));
   } catch (const CLI::Success& wanted) {  // --help, --version
     return app.exit(wanted);
   } catch (const CLI::ParseError& problem) {

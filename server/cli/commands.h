@@ -19,7 +19,8 @@ Command add_reconstruct_command(CLI::App& app);
 Command add_info_command(CLI::App& app);
 Command add_synth_command(CLI::App& app);
 
-/// Parses the command line, runs one command, prints at most one line of error on stderr ("geosis: code: message").
+/// Parses the command line, the environment (GEOSIS_<FLAG>) and the file of --config, in this order of weight; runs one
+/// command, prints at most one line of error on stderr ("geosis: code: message").
 ///
 /// more      commands beside those of this room.
 /// returns   the exit status: 0, 1 = the command failed, 2 = the command line makes no sense.

@@ -1,8 +1,10 @@
 #include "server/http/listener.h"
 
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <memory>
+#include <string_view>
 #include <utility>
 
 #include <fcntl.h>
@@ -18,9 +20,16 @@ constexpr int kBacklog = 1024;
 
 using Addresses = std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>;
 
+/// A number from 0 to 65535; the resolver would take larger ones modulo 65536.
+bool is_port(std::string_view text) {
+  std::uint16_t port = 0;
+  const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), port);
+  return problem == std::errc{} && end == text.data() + text.size();
+}
+
 Result<Addresses> resolve(const std::string& address) {
   const std::size_t colon = address.rfind(':');
-  if (colon == std::string::npos || colon == 0 || colon + 1 == address.size()) {
+  if (colon == std::string::npos || colon == 0 || !is_port(std::string_view(address).substr(colon + 1))) {
     return Error{ErrorCode::invalid_argument, "listen address \"" + address + "\"; expected host:port"};
   }
   std::string host = address.substr(0, colon);

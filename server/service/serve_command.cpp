@@ -1,6 +1,5 @@
 #include "server/service/serve_command.h"
 
-#include <cctype>
 #include <memory>
 #include <string>
 
@@ -9,14 +8,6 @@
 
 namespace geosis::server {
 namespace {
-
-/// "--max-body" is GEOSIS_MAX_BODY.
-std::string variable_of(const std::string& flag) {
-  std::string name = "GEOSIS_";
-  for (const char c : flag.substr(2))
-    name += c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-  return name;
-}
 
 struct ServeArguments {
   ServeOptions options;
@@ -28,12 +19,11 @@ struct ServeArguments {
 
 Command add_serve_command(CLI::App& app) {
   auto& command = *app.add_subcommand("serve", "Serve volumes and extractions over HTTP, and the page that shows them");
-  command.configurable();
   auto arguments = std::make_shared<ServeArguments>();
   ServeOptions& options = arguments->options;
   options.threads = default_threads();
   const auto flag = [&](const char* name, auto& value, const char* help) {
-    return command.add_option(name, value, help)->envname(variable_of(name))->capture_default_str();
+    return command.add_option(name, value, help)->capture_default_str();
   };
   flag("--listen", options.listen, "HOST:PORT; port 0 = any that is free")->type_name("ADDRESS");
   flag("--store", arguments->store, "folder of everything that is kept")->type_name("DIR");

@@ -305,5 +305,54 @@ class Refusals(WithFolder):
             self.assertRegex(run.stderr, r"\Ageosis: usage: [^\n]+\n\Z")
 
 
+class Settings(unittest.TestCase):
+    """A flag wins over the environment, the environment over the configuration file."""
+
+    def served_at(self, *flags, **variables):
+        """The port that the server says it listens on; it is stopped at once."""
+        with subprocess.Popen([GEOSIS, "serve", "--store", self.store, *flags], stdout=subprocess.PIPE, text=True,
+                              stderr=subprocess.DEVNULL, env={**os.environ, **variables}) as server:
+            line = server.stdout.readline()
+            server.terminate()
+            self.assertEqual(server.wait(20), 0)
+        return line.strip().removeprefix("listening on http://")
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory(prefix="geosis-test-")
+        self.addCleanup(folder.cleanup)
+        self.store = str(Path(folder.name, "store"))
+        self.config = Path(folder.name, "geosis.ini")
+        self.config.write_text("[serve]\nlisten=127.0.0.2:0\n", encoding="ascii")
+
+    def test_file_is_read(self):
+        self.assertTrue(self.served_at("--config", str(self.config)).startswith("127.0.0.2:"))
+
+    def test_environment_wins_over_the_file(self):
+        served = self.served_at("--config", str(self.config), GEOSIS_LISTEN="127.0.0.3:0")
+        self.assertTrue(served.startswith("127.0.0.3:"), served)
+
+    def test_flag_wins_over_the_environment(self):
+        served = self.served_at("--listen", "127.0.0.4:0", GEOSIS_LISTEN="127.0.0.3:0")
+        self.assertTrue(served.startswith("127.0.0.4:"), served)
+
+    def test_variables_stand_for_flags_of_every_command(self):
+        folder = Path(self.store).parent
+        survey = folder / "survey.sgy"
+        subprocess.run([GEOSIS, "synth", survey], env={**os.environ, "GEOSIS_DIMS": "20,24,28"}, check=True,
+                       capture_output=True)
+        document = json.loads(geosis("info", survey).stdout)
+        self.assertEqual(document["dims"], [20, 24, 28])
+        subprocess.run([GEOSIS, "reconstruct", survey, "--out", folder / "out"], check=True, capture_output=True,
+                       env={**os.environ, "GEOSIS_RANGE": "-inf 0.1", "GEOSIS_NO_CAP": "true"})
+        request = json.loads((folder / "out/manifest.json").read_text(encoding="utf-8"))["request"]
+        self.assertEqual((request["range"][0], request["cap"]), (None, False))
+
+    def test_addresses_that_make_no_sense_are_refused(self):
+        for address in ("127.0.0.1:99999", "127.0.0.1", "127.0.0.1:http", ":8080", "0.0.0.0:0"):
+            refused = geosis("serve", "--store", self.store, "--listen", address)
+            self.assertEqual(refused.returncode, 1, address)
+            self.assertIn("invalid_argument", refused.stderr)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -88,16 +88,18 @@ void Extraction::set_cancelled() {
   cancelled_ = true;
 }
 
-void Extraction::add_interest() {
+bool Extraction::add_interest() {
   const std::lock_guard lock(mutex_);
+  if (ending_) return false;
   ++interest_;
+  return true;
 }
 
 bool Extraction::withdraw_interest() {
   const std::lock_guard lock(mutex_);
   if (interest_ > 0) --interest_;
-  const bool has_ended = manifest_ || !job_ || is_final(job_->status().state);
-  return interest_ == 0 && !has_ended;
+  if (interest_ > 0 || manifest_ || !job_ || is_final(job_->status().state)) return false;
+  return ending_ = true;
 }
 
 void Extraction::cancel() {
@@ -111,7 +113,7 @@ void Extraction::cancel() {
 
 bool Extraction::is_ending() const {
   const std::lock_guard lock(mutex_);
-  return cancelled_ || (job_ && job_->cancelled() && !manifest_);
+  return (cancelled_ || ending_ || (job_ && job_->cancelled())) && !manifest_;
 }
 
 Json resource_document(const Extraction& extraction) {

@@ -58,11 +58,12 @@ class Extraction {
   void set_cancelled();
 
   // Interest: every POST adds one; when the last is withdrawn the work stops.
-  void add_interest();
-  /// True when none is left and the work has not ended: the caller makes it durable and calls cancel().
+  /// False when it is ending without a result: whoever asks now must start it anew.
+  bool add_interest();
+  /// True when none is left and the work has not ended: it is ending from now on, and the caller calls cancel().
   bool withdraw_interest();
   void cancel();
-  /// Its cancellation was asked for and it has no result: it ends, or has ended, as cancelled.
+  /// Nobody wants it any more, and it has no result: it ends, or has ended, as cancelled.
   bool is_ending() const;
 
  private:
@@ -73,7 +74,8 @@ class Extraction {
   std::vector<Json> levels_;
   std::optional<Json> manifest_;
   std::optional<ExtractionTimings> timings_;
-  bool cancelled_ = false;
+  bool cancelled_ = false;  ///< before anybody computed it
+  bool ending_ = false;
   int interest_ = 0;
 };
 

@@ -15,6 +15,7 @@ constexpr const char* kRequest = "request.json";
 constexpr const char* kManifest = "manifest.json";  // there = it is done
 constexpr const char* kCancelled = "cancelled.json";
 constexpr std::size_t kMostEntries = 512;
+constexpr std::chrono::milliseconds kLongestStop = std::chrono::seconds(10);
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
@@ -135,36 +136,46 @@ Result<std::shared_ptr<Extraction>> Extractions::create(const std::string& volum
     auto loaded = load(*entry, id);
     if (!loaded && loaded.error().code != ErrorCode::not_found) return loaded;
   }
-  if (!entry->extraction || ends_without_result(*entry->extraction)) {
-    auto started = record_and_start(*entry, {id, volume, timestamp(), std::move(canonical)}, priority);
-    if (!started) return started;
-  }
-  entry->extraction->add_interest();
-  return entry->extraction;
+  const bool is_usable = entry->extraction && !ends_without_result(*entry->extraction);
+  if (is_usable && entry->extraction->add_interest()) return entry->extraction;
+  auto started = record_and_start(*entry, {id, volume, timestamp(), std::move(canonical)}, priority);
+  if (started) (*started)->add_interest();
+  return started;
 }
 
-/// The request is durable before anybody is told of it.
+/// A place in the queue first: a request that is refused leaves no record. The request is durable before anybody is
+/// told of it, and before its job goes on.
 Result<std::shared_ptr<Extraction>> Extractions::record_and_start(Entry& entry, Extraction::Identity identity,
                                                                   Priority priority) {
-  const std::string id = identity.id;
-  const Json record = {{"id", id},
+  auto extraction = std::make_shared<Extraction>(identity, part_reader(identity.id));
+  std::promise<bool> recorded;
+  if (auto started = start(extraction, priority, recorded.get_future().share()); !started) {
+    return std::move(started).error();
+  }
+  auto done = record(identity);
+  recorded.set_value(done.has_value());
+  if (!done) return std::move(done).error();
+  return entry.extraction = std::move(extraction);
+}
+
+Result<void> Extractions::record(const Extraction::Identity& identity) {
+  const Json record = {{"id", identity.id},
                        {"volume", identity.volume},
                        {"result_version", kResultVersion},
                        {"created_at", identity.created_at},
                        {"request", identity.request}};
-  if (auto done = write_document(result_key(identity.volume, id), Json::object()); !done)
-    return std::move(done).error();
-  if (auto done = write_document(key(id, kRequest), record); !done) return std::move(done).error();
-  if (auto done = store_.remove(key(id, kCancelled)); !done && done.error().code != ErrorCode::not_found) {
-    return std::move(done).error();
-  }
-  auto extraction = std::make_shared<Extraction>(std::move(identity), part_reader(id));
-  if (auto started = start(extraction, priority); !started) return std::move(started).error();
-  return entry.extraction = std::move(extraction);
+  if (auto done = write_document(result_key(identity.volume, identity.id), Json::object()); !done) return done;
+  if (auto done = write_document(key(identity.id, kRequest), record); !done) return done;
+  const auto done = store_.remove(key(identity.id, kCancelled));
+  return !done && done.error().code != ErrorCode::not_found ? done : Result<void>{};
 }
 
-Result<void> Extractions::start(std::shared_ptr<Extraction> extraction, Priority priority) {
-  auto job = queue_.submit(priority, [this, extraction](Job& running) { return run(*extraction, running); });
+Result<void> Extractions::start(std::shared_ptr<Extraction> extraction, Priority priority,
+                                std::shared_future<bool> recorded) {
+  auto job = queue_.submit(priority, [this, extraction, recorded](Job& running) -> Result<void> {
+    if (!recorded.get()) return Error{ErrorCode::cancelled, "the request could not be recorded"};
+    return run(*extraction, running);
+  });
   if (!job) return std::move(job).error();
   extraction->set_job(*std::move(job));
   return {};
@@ -255,10 +266,11 @@ Result<std::shared_ptr<Extraction>> Extractions::load(Entry& entry, const std::s
     return Error{ErrorCode::unavailable, "extraction " + id + ": asked of result version " +
                                              record->at("result_version").dump() + "; this is version " +
                                              std::to_string(kResultVersion)};
-  } else if (auto started = start(extraction, Priority::interactive); !started) {
-    return std::move(started).error();
   } else {
-    extraction->add_interest();
+    std::promise<bool> recorded;
+    recorded.set_value(true);
+    auto started = start(extraction, Priority::interactive, recorded.get_future().share());
+    if (!started) return std::move(started).error();
   }
   return entry.extraction = std::move(extraction);
 }
@@ -266,44 +278,60 @@ Result<std::shared_ptr<Extraction>> Extractions::load(Entry& entry, const std::s
 // ---- ending
 
 Result<void> Extractions::withdraw(const std::string& id) {
-  const auto extraction = find(id);
-  if (!extraction) return extraction.error();
-  if (!(*extraction)->withdraw_interest()) return {};
-  if (auto done = write_document(key(id, kCancelled), {{"cancelled_at", timestamp()}}); !done) return done;
-  (*extraction)->cancel();
-  return {};
+  if (!is_id(id)) return no_such_extraction(id);
+  const auto entry = entry_of(id);
+  const std::lock_guard lock(entry->mutex);  // a POST in between starts it anew
+  if (!entry->extraction) {
+    if (auto loaded = load(*entry, id); !loaded) return std::move(loaded).error();
+  }
+  if (!entry->extraction->withdraw_interest()) return {};
+  const auto done = write_document(key(id, kCancelled), {{"cancelled_at", timestamp()}});
+  entry->extraction->cancel();
+  return done;
+}
+
+void Extractions::abandon(Extraction& extraction) {
+  if (extraction.withdraw_interest()) extraction.cancel();
 }
 
 Result<void> Extractions::purge(const std::string& id) {
   const auto record = read_document(id, kRequest);
   if (!record) return record.error();
+  if (auto done = remove_blobs(id); !done) return done;
+  return store_.remove(result_key(record->at("volume").get<std::string>(), id));
+}
+
+/// Removes what is stored of an extraction, whether or not it has a record. What computes it is stopped first, or it
+/// would go on storing parts.
+Result<void> Extractions::remove_blobs(const std::string& id) {
   const auto entry = entry_of(id);
   const std::lock_guard lock(entry->mutex);
-  if (entry->extraction) entry->extraction->cancel();
-  entry->extraction.reset();
-  // The manifest first: what is left is then no result any more, whatever happens in between.
-  for (const char* name : {kManifest, kRequest}) {
-    if (auto done = store_.remove(key(id, name)); !done && done.error().code != ErrorCode::not_found) return done;
+  if (entry->extraction) {
+    entry->extraction->cancel();
+    entry->extraction->wait_for(kLongestStop);
+    entry->extraction.reset();
   }
+  // The manifest first: what is left is then no result any more. The record last: until then the rest can be found.
+  if (auto done = store_.remove(key(id, kManifest)); !done) return done;
   for (;;) {
     const auto keys = store_.list(key(id, ""), "", 1000);
     if (!keys) return keys.error();
-    if (keys->empty()) break;
+    const BlobKey record = key(id, kRequest);
+    const bool is_last = keys->size() <= 1;
     for (const BlobKey& left : *keys) {
-      if (auto done = store_.remove(left); !done && done.error().code != ErrorCode::not_found) return done;
+      if (left == record && !is_last) continue;
+      if (auto done = store_.remove(left); !done) return done;
     }
+    if (is_last) return {};
   }
-  const auto done = store_.remove(result_key(record->at("volume").get<std::string>(), id));
-  return !done && done.error().code != ErrorCode::not_found ? done : Result<void>{};
 }
 
 Result<void> Extractions::purge_results_of(const std::string& volume) {
   const auto ids = store_.children(result_key(volume, ""));
   if (!ids) return ids.error();
   for (const std::string& id : *ids) {
-    if (auto done = purge(id); !done && done.error().code != ErrorCode::not_found) return done;
-    if (auto done = store_.remove(result_key(volume, id)); !done && done.error().code != ErrorCode::not_found)
-      return done;
+    if (auto done = remove_blobs(id); !done) return done;
+    if (auto done = store_.remove(result_key(volume, id)); !done) return done;
   }
   return {};
 }
@@ -322,6 +350,13 @@ Result<LevelFile> Extractions::part(const std::string& id, int level, int part) 
   LevelFile file{.sha256 = sha256_hex(*bytes), .bytes = bytes->size(), .stream = nullptr, .transform = {}};
   file.stream = bytes_stream(*std::move(bytes));
   return file;
+}
+
+bool Extractions::is_level_made(const std::string& id, int level, LevelFormat format) {
+  const auto made = store_.exists(key(id, level_file_name(level, format) + ".json"));
+  if (made && *made) return true;
+  const auto more = store_.exists(key(id, part_name(level, 1)));
+  return format == LevelFormat::drc && more && !*more;  // one part is the whole level
 }
 
 Result<LevelFile> Extractions::level(const std::string& id, int level, LevelFormat format) {

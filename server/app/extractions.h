@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <functional>
+#include <future>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -55,14 +56,18 @@ class Extractions {
                                                        const Json& request, Progress& progress,
                                                        std::vector<GridCandidate>& candidates);
 
-  /// Takes one interest away; without any left the work stops within 200 ms, durably.
+  /// Takes one interest away; without any left the work stops, durably.
   Result<void> withdraw(const std::string& id);
+  /// The same for a reader who went away, of just this extraction and at once: nobody waits for it to be durable.
+  static void abandon(Extraction& extraction);
   /// Removes a stored result.
   Result<void> purge(const std::string& id);
   /// Removes all that was derived from a volume.
   Result<void> purge_results_of(const std::string& volume);
 
-  /// Level k, whole, in one file. errors: not_found; already_exists never; unavailable: not done yet.
+  /// False when level() would have to make the file first.
+  bool is_level_made(const std::string& id, int level, LevelFormat format);
+  /// Level k, whole, in one file. errors: not_found; already_exists: it is not done.
   Result<LevelFile> level(const std::string& id, int level, LevelFormat format);
   /// One encoded part; may be read as soon as its level is ready.
   Result<LevelFile> part(const std::string& id, int level, int part);
@@ -82,7 +87,10 @@ class Extractions {
   std::shared_ptr<Entry> entry_of(const std::string& id);
   Result<std::shared_ptr<Extraction>> load(Entry& entry, const std::string& id);
   Result<std::shared_ptr<Extraction>> record_and_start(Entry& entry, Extraction::Identity identity, Priority priority);
-  Result<void> start(std::shared_ptr<Extraction> extraction, Priority priority);
+  /// recorded   the job goes on once this says true, and gives up when it says false.
+  Result<void> start(std::shared_ptr<Extraction> extraction, Priority priority, std::shared_future<bool> recorded);
+  Result<void> record(const Extraction::Identity& identity);
+  Result<void> remove_blobs(const std::string& id);
   Result<void> run(Extraction& extraction, Job& job);
   Result<LevelFile> whole_level(const std::string& id, int level, LevelFormat format, const Json& manifest);
   Result<void> make_level_file(const std::string& id, int level, LevelFormat format, const Json& manifest);

@@ -80,7 +80,10 @@ Result<UploadResult> Volumes::add(const ByteSource& file, const UploadOptions& o
                  "SHA-256 of the body is " + description.digest + "; the request states " + *options.digest};
   }
   const std::string id = volume_id(description);
-  if (auto here = document(id)) return UploadResult{false, *std::move(here)};
+  const std::lock_guard lock(writing_);
+  if (auto here = document(id); here && store_.local_file(key(id, kBricks))) {
+    return UploadResult{false, *std::move(here)};
+  }
 
   imported->samples.reset();  // unmapped before it moves
   if (auto done = store_.commit(*std::move(bricks), key(id, kBricks)); !done) return std::move(done).error();
@@ -141,6 +144,7 @@ Result<Json> Volumes::list(std::size_t page_size, const std::string& page_token)
 }
 
 Result<Json> Volumes::change(const std::string& id, const Json& changes) {
+  const std::lock_guard lock(writing_);
   if (auto volume = read_document(id, kVolume); !volume) return volume;
   if (!changes.is_object()) return Error{ErrorCode::invalid_argument, "/: expected an object"};
   for (const auto& [name, value] : changes.items()) {
@@ -157,14 +161,13 @@ Result<Json> Volumes::change(const std::string& id, const Json& changes) {
 }
 
 Result<void> Volumes::remove(const std::string& id) {
+  const std::lock_guard lock(writing_);
   if (auto volume = read_document(id, kVolume); !volume) return volume.error();
-  {
-    const std::lock_guard lock(mutex_);
-    recent_.remove_if([&](const auto& v) { return v->summary.id == id; });
-  }
   for (const char* name : {kVolume, kSidecar, kBricks}) {
-    if (auto done = store_.remove(key(id, name)); !done && done.error().code != ErrorCode::not_found) return done;
+    if (auto done = store_.remove(key(id, name)); !done) return done;
   }
+  const std::lock_guard recent(mutex_);  // after it is gone: nobody opens it again
+  recent_.remove_if([&](const auto& v) { return v->summary.id == id; });
   return {};
 }
 

@@ -73,7 +73,8 @@ class Volumes {
   BlobStore& store_;
   const std::string tenant_;
   const int threads_;
-  std::mutex mutex_;
+  std::mutex writing_;                                     ///< of what makes, changes or removes volumes
+  std::mutex mutex_;                                       ///< of recent_
   std::list<std::shared_ptr<const StoredVolume>> recent_;  ///< most recently opened first
 };
 

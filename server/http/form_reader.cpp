@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::size_t kPiece = 1 << 18;
 constexpr std::size_t kLongestHead = 1 << 13, kLongestText = 1 << 16;
+constexpr std::size_t kMostFields = 16;
 
 Error malformed(const char* what) {
   return {ErrorCode::malformed_input, std::string("form: ") + what};
@@ -109,6 +110,7 @@ Result<void> read_part(Window& window, std::string_view delimiter, const FileSin
   auto head = parse_head(*head_text);
   if (!head) return std::move(head).error();
   if (head->name != "file") {
+    if (fields.text.size() >= kMostFields) return Error{ErrorCode::limit_exceeded, "form: too many fields"};
     auto text = read_text(window, delimiter, kLongestText);
     if (!text) return std::move(text).error();
     fields.text[head->name] = *std::move(text);

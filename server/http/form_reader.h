@@ -20,7 +20,7 @@ using FileSink = std::function<Result<void>(std::span<const std::byte>)>;
 
 /// What a form holds beside its file.
 struct FormFields {
-  std::map<std::string, std::string> text;  ///< field name -> value, at most 64 KiB each
+  std::map<std::string, std::string> text;  ///< field name -> value, at most 16 of 64 KiB each
   std::string file_name;                    ///< as the client calls it
   bool has_file = false;
 };

@@ -35,6 +35,13 @@ Reply level_stream_reply(std::shared_ptr<Extraction> extraction, std::function<v
                       std::string(kMultipart) + "; boundary=" + kBoundary);
 }
 
+/// What a stream that carries the answer itself does when its reader goes away.
+std::function<void()> abandonment(const std::shared_ptr<Extraction>& extraction) {
+  return [watched = std::weak_ptr(extraction)] {
+    if (const auto held = watched.lock()) Extractions::abandon(*held);
+  };
+}
+
 Reply create(Services services, const Request& request) {
   if (auto known = only_parameters(request, {}); !known) return error_reply(known.error());
   if (!has_json_body(request)) return not_json();
@@ -44,7 +51,7 @@ Reply create(Services services, const Request& request) {
   if (!extraction) return error_reply(extraction.error());
   const std::string id = (*extraction)->identity().id;
   if (accepts(request, kMultipart)) {
-    return level_stream_reply(*extraction, [services, id] { (void)services.extractions.withdraw(id); });
+    return level_stream_reply(*extraction, abandonment(*extraction));
   }
   if (const auto wait = preference(request).wait_seconds) {
     // A preference: when too many wait already, the answer comes at once.
@@ -118,11 +125,16 @@ Reply level(Services services, const Request& request) {
   const auto extraction = services.extractions.find(id);
   if (!extraction) return error_reply(extraction.error());
   if (!(*extraction)->snapshot().manifest) return not_done(**extraction);
-  const auto seat = services.waiting.take();  // it may have to be made first
-  if (!seat) return error_reply({ErrorCode::unavailable, "too many requests wait for results"});
   const LevelFormat wanted = format == "drc" ? LevelFormat::drc : format == "ply" ? LevelFormat::ply : LevelFormat::obj;
   const char* const type = format == "drc" ? "model/vnd.google.draco" : format == "ply" ? "model/ply" : "model/obj";
-  auto file = services.extractions.level(id, small_number(request.captures[1]), wanted);
+  const int number = small_number(request.captures[1]);
+  std::optional<WaitingRoom::Seat> seat;
+  if (!services.extractions.is_level_made(id, number, wanted)) {
+    if (seat = services.waiting.take(); !seat) {
+      return error_reply({ErrorCode::unavailable, "too many requests wait for results"});
+    }
+  }
+  auto file = services.extractions.level(id, number, wanted);
   const std::string transform = file ? file->transform : "";
   return file_reply(std::move(file), type, transform);
 }
@@ -177,9 +189,7 @@ Reply extract(Services services, const Request& request, BodyReader& body) {
   NoProgress unwatched;
   const auto extraction = services.extractions.create_transient(**file, *options, *wanted, unwatched, candidates);
   if (!extraction) return upload_refusal(extraction.error(), candidates);
-  return level_stream_reply(*extraction, [watched = std::weak_ptr(*extraction)] {
-    if (const auto held = watched.lock()) held->cancel();
-  });
+  return level_stream_reply(*extraction, abandonment(*extraction));
 }
 
 }  // namespace

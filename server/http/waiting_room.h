@@ -16,7 +16,10 @@ class WaitingRoom {
    public:
     explicit Seat(WaitingRoom& room) : room_(&room) {}
     Seat(Seat&& other) noexcept : room_(std::exchange(other.room_, nullptr)) {}
-    Seat& operator=(Seat&&) = delete;
+    Seat& operator=(Seat&& other) noexcept {
+      std::swap(room_, other.room_);
+      return *this;
+    }
     ~Seat() {
       if (room_) ++room_->free_;
     }

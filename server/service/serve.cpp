@@ -1,5 +1,6 @@
 #include "server/service/serve.h"
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -65,7 +66,10 @@ class StopSignals {
 void drain_and_stop(http::Front& front, JobQueue& queue, StopSignals& signals, std::chrono::milliseconds grace) {
   std::atomic<bool> is_drained{false};
   std::jthread draining([&] {
+    const auto end = std::chrono::steady_clock::now() + grace;
     front.drain(grace);
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
+    queue.drain(std::max(left, std::chrono::milliseconds(0)));
     is_drained = true;
   });
   while (!is_drained && !signals.wait_for(std::chrono::milliseconds(50))) {

@@ -174,6 +174,43 @@ TEST_F(ExtractionsTest, AskedForAgainWhileItStopsItStartsAnew) {
   EXPECT_EQ((*second)->snapshot().state, JobState::done);
 }
 
+TEST_F(ExtractionsTest, RefusedForAFullQueueLeavesNothing) {
+  Service service(*store);
+  const std::string volume = service.add_ball();
+  service.queue.stop();  // takes nothing any more
+  const auto refused = service.extractions.create(volume, ball_request(), Priority::interactive);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::unavailable);
+  EXPECT_TRUE(store->list("default/extractions/", "", 10)->empty());
+  EXPECT_TRUE(store->list("default/volumes/" + volume + "/results/", "", 10)->empty());
+}
+
+TEST_F(ExtractionsTest, ReaderWhoLeavesEndsOnlyWhatHeReads) {
+  Gate gate;
+  Service service(*store, gated_after(4, gate));
+  const std::string volume = service.add_ball();
+  const auto first = service.extractions.create(volume, ball_request(), Priority::interactive);
+  ASSERT_TRUE(first);
+  ASSERT_TRUE(comes_true([&] { return gate.has_arrived(); }));
+  ASSERT_TRUE(service.extractions.withdraw((*first)->identity().id));
+  const auto second = service.extractions.create(volume, ball_request(), Priority::interactive);
+  ASSERT_TRUE(second);
+  Extractions::abandon(**first);  // the stream of the one that was stopped breaks only now
+  gate.open();
+  (*second)->wait_for(30s);
+  EXPECT_EQ((*second)->snapshot().state, JobState::done);
+}
+
+TEST_F(ExtractionsTest, PurgedWhileItRunsLeavesNothing) {
+  Gate gate;
+  Service service(*store, gated_after(4, gate));
+  const auto running = service.extractions.create(service.add_ball(), ball_request(), Priority::interactive);
+  ASSERT_TRUE(running);
+  ASSERT_TRUE(comes_true([&] { return gate.has_arrived(); }));
+  ASSERT_TRUE(service.extractions.purge((*running)->identity().id));
+  EXPECT_TRUE(store->list("default/extractions/", "", 10)->empty());
+}
+
 TEST_F(ExtractionsTest, FailedOneStartsAgain) {
   std::atomic<bool> fails{true};
   Service service(*store, [&](auto&&... arguments) -> Result<Reconstruction> {

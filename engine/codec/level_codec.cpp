@@ -15,14 +15,22 @@ namespace {
 
 /// make_part(0) ... make_part(count - 1) in parallel, in order; the first part's error if one fails.
 template <class Part, class MakePart>
-Result<std::vector<Part>> make_parts(std::size_t count, int threads, const MakePart& make_part) {
+Result<std::vector<Part>> make_parts(std::size_t count, int threads, const Progress& progress,
+                                     const MakePart& make_part) {
   std::vector<std::optional<Result<Part>>> made(count);
-  parallel_for(count, threads, [&](std::size_t part) { made[part] = make_part(part); });
+  parallel_for(count, threads, [&](std::size_t part) {
+    if (progress.cancelled()) {
+      made[part] = Error{ErrorCode::cancelled, "the encoding or decoding of a level was cancelled"};
+    } else {
+      made[part] = make_part(part);
+    }
+  });
   std::vector<Part> parts;
   parts.reserve(count);
   for (std::size_t part = 0; part < count; ++part) {
     if (!*made[part]) {
       const Error& error = made[part]->error();
+      if (error.code == ErrorCode::cancelled) return error;
       return Error{error.code, "part " + std::to_string(part) + ": " + error.message};
     }
     parts.push_back(*std::move(*made[part]));
@@ -39,20 +47,21 @@ int position_bits_for(std::int32_t longest_axis_samples) {
              : static_cast<int>(std::bit_width(static_cast<std::uint64_t>(last_node * kLatticeStepsPerVoxel)));
 }
 
-Result<EncodedLevel> encode_level(const IndexedMesh& mesh, const EncodeOptions& options) {
+Result<EncodedLevel> encode_level(const IndexedMesh& mesh, const EncodeOptions& options, const Progress& progress) {
   if (auto encodable = check_level(mesh, options); !encodable) return encodable.error();
   const PartPlan plan = plan_parts(mesh, options.max_part_triangles);
-  auto parts = make_parts<EncodedPart>(plan.parts(), options.threads, [&](std::size_t part) {
+  auto parts = make_parts<EncodedPart>(plan.parts(), options.threads, progress, [&](std::size_t part) {
     return encode_part(cut_part(mesh, plan, part), options);
   });
   if (!parts) return std::move(parts).error();
   return EncodedLevel{*std::move(parts)};
 }
 
-Result<IndexedMesh> decode_level(const std::vector<std::span<const std::byte>>& parts, int threads) {
+Result<IndexedMesh> decode_level(const std::vector<std::span<const std::byte>>& parts, int threads,
+                                 const Progress& progress) {
   if (parts.empty()) return Error{ErrorCode::malformed_input, "a level without parts"};
   auto decoded =
-      make_parts<MeshPart>(parts.size(), threads, [&](std::size_t part) { return decode_part(parts[part]); });
+      make_parts<MeshPart>(parts.size(), threads, progress, [&](std::size_t part) { return decode_part(parts[part]); });
   if (!decoded) return std::move(decoded).error();
   return join_parts(*std::move(decoded));
 }

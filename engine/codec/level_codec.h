@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/progress.h"
 #include "engine/base/result.h"
 #include "engine/mesh/indexed_mesh.h"
 
@@ -52,15 +53,18 @@ int position_bits_for(std::int32_t longest_axis_samples);
 ///          the 1/64 lattice, 0 <= position < 2^(bits - 6). Vertices that no triangle uses are left out.
 /// returns  parts of nearly equal size. The same bytes for any number of threads.
 /// errors   invalid_argument: a position that is not finite, off the lattice or out of range, a bad index, no
-///          triangles, a triangle with a repeated vertex, options out of range.  internal: Draco failed.
+///          triangles, a triangle with a repeated vertex, options out of range.  internal: Draco failed.  cancelled:
+///          asked before each part.
 /// cost     about 4 million triangles a second and core; memory: one part a thread + the bytes.
-Result<EncodedLevel> encode_level(const IndexedMesh& mesh, const EncodeOptions& options);
+Result<EncodedLevel> encode_level(const IndexedMesh& mesh, const EncodeOptions& options,
+                                  const Progress& progress = NoProgress());
 
 /// The parts decoded and joined along their seams by seam id: what a client sees, and what the certificate describes.
 ///
 /// returns  triangles part after part, in decoding order; vertices numbered by their first appearance.
-/// errors   malformed_input: bytes that Draco refuses, no parts, or parts that disagree on a seam.
+/// errors   malformed_input: bytes that Draco refuses, no parts, or parts that disagree on a seam.  cancelled.
 /// cost     about 10 million triangles a second and core.
-Result<IndexedMesh> decode_level(const std::vector<std::span<const std::byte>>& parts, int threads = 1);
+Result<IndexedMesh> decode_level(const std::vector<std::span<const std::byte>>& parts, int threads = 1,
+                                 const Progress& progress = NoProgress());
 
 }  // namespace geosis

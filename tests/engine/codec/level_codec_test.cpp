@@ -22,6 +22,20 @@ using test::expect_round_trip;
 const EncodeOptions kWhole = {.position_bits = 13};
 const EncodeOptions kTinyParts = {.position_bits = 13, .max_part_triangles = 50};
 
+TEST(EncodeLevel, StopsBeforeTheNextPartWhenCancelled) {
+  class Cancelled final : public Progress {
+    void report(const char*, double) override {}
+    bool cancelled() const override { return true; }
+  };
+  const IndexedMesh mesh = test::sphere({32, 32, 32}, 20, 30, 40);
+  EXPECT_EQ(encode_level(mesh, kTinyParts, Cancelled()).error().code, ErrorCode::cancelled);
+  const auto encoded = encode_level(mesh, kTinyParts);
+  ASSERT_TRUE(encoded);
+  std::vector<std::span<const std::byte>> parts;
+  for (const EncodedPart& part : encoded->parts) parts.emplace_back(part.bytes);
+  EXPECT_EQ(decode_level(parts, 1, Cancelled()).error().code, ErrorCode::cancelled);
+}
+
 TEST(EncodeLevel, SphereComesBackWhole) {
   expect_round_trip(test::sphere({32, 32, 32}, 20, 30, 40), kWhole);
 }

@@ -16,6 +16,8 @@ namespace {
 
 constexpr float kLargestCoordinate = 131'072;  // voxels; beyond, float32 does not hold all lattice points
 
+const Error kCancelled = {ErrorCode::cancelled, "levels of detail: cancelled"};
+
 Error invalid(std::string message) {
   return {ErrorCode::invalid_argument, std::move(message)};
 }
@@ -50,11 +52,14 @@ Result<void> check_positions(const std::vector<Vec3f>& positions) {
   return {};
 }
 
-Result<WorkingMesh> check_and_load(const IndexedMesh& m0) {
+/// Asks between its steps whether anybody still wants it: each takes a while for millions of triangles.
+Result<WorkingMesh> check_and_load(const IndexedMesh& m0, const Progress& progress) {
   if (auto on_lattice = check_positions(m0.positions); !on_lattice) return std::move(on_lattice).error();
   const auto table = build_corner_table(m0);
   if (!table) return table.error();
+  if (progress.cancelled()) return kCancelled;
   if (auto fans = check_fans(*table, m0.positions.size()); !fans) return std::move(fans).error();
+  if (progress.cancelled()) return kCancelled;
   return make_working_mesh(m0, *table);
 }
 
@@ -67,7 +72,8 @@ std::int64_t triangles_for(double ratio, std::size_t triangles) {
 Result<LodHierarchy> build_lods_in_windows(IndexedMesh m0, const BuildLodsOptions& options, const WindowSizes& sizes,
                                            Progress& progress) {
   if (auto falling = check_ratios(options.ratios); !falling) return std::move(falling).error();
-  auto working = check_and_load(m0);
+  progress.report("simplify", 0);
+  auto working = check_and_load(m0, progress);
   if (!working) return std::move(working).error();
   const std::size_t all = m0.triangles.size();
   Watch watch(progress, static_cast<std::int64_t>(all) - triangles_for(options.ratios.back(), all));
@@ -82,7 +88,7 @@ Result<LodHierarchy> build_lods_in_windows(IndexedMesh m0, const BuildLodsOption
       continue;
     }
     const std::int64_t target = triangles_for(ratio, all);
-    if (!reducer.reduce(target)) return Error{ErrorCode::cancelled, "levels of detail: cancelled"};
+    if (!reducer.reduce(target)) return kCancelled;
     level.mesh = reducer.snapshot();
     level.cost = reducer.max_cost();
     if (reducer.at_floor()) level.stopped_by = StoppedBy::floor;

@@ -10,7 +10,7 @@
 #include "engine/codec/level_codec.h"
 #include "engine/codec/obj.h"
 #include "engine/codec/ply.h"
-#include "engine/volume/geometry.h"
+#include "server/documents/volume_document.h"
 
 namespace geosis::server {
 namespace {
@@ -27,10 +27,6 @@ Result<IndexedMesh> read_level(const Json& entry, int level, const PartReader& r
     parts.push_back(*std::move(bytes));
   }
   return decode_level({parts.begin(), parts.end()}, threads);
-}
-
-AffineGeometry geometry_of(const std::array<double, 16>& m) {
-  return AffineGeometry({m[3], m[7], m[11]}, {m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]});
 }
 
 /// Bits that hold every position of the mesh.

@@ -48,6 +48,11 @@ Json volume_document(const VolumeDescription& volume, const std::string& name) {
           {"warnings", warnings_document(volume.warnings)}};
 }
 
+AffineGeometry geometry_of(const std::array<double, 16>& transform) {
+  const auto& m = transform;
+  return AffineGeometry({m[3], m[7], m[11]}, {m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]});
+}
+
 VolumeSummary summarize(const VolumeDescription& volume) {
   return {volume_id(volume), volume.shape, volume.geometry, volume.sample_unit};
 }
@@ -55,11 +60,10 @@ VolumeSummary summarize(const VolumeDescription& volume) {
 Result<VolumeSummary> parse_volume_document(const Json& document) {
   try {
     const Json& dims = document.at("dims");
-    const auto m = document.at("geometry").at("transform").get<std::array<double, 16>>();
     return VolumeSummary{
         .id = document.at("id").get<std::string>(),
         .shape = {dims.at(0).get<std::int32_t>(), dims.at(1).get<std::int32_t>(), dims.at(2).get<std::int32_t>()},
-        .geometry = AffineGeometry({m[3], m[7], m[11]}, {m[0], m[4], m[8]}, {m[1], m[5], m[9]}, {m[2], m[6], m[10]}),
+        .geometry = geometry_of(document.at("geometry").at("transform").get<std::array<double, 16>>()),
         .sample_unit = document.at("axes").at("sample").at("unit").get<std::string>()};
   } catch (const Json::exception& problem) {
     return Error{ErrorCode::malformed_input, std::string("volume document: ") + problem.what()};

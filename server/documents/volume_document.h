@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 
 #include "engine/base/result.h"
@@ -13,6 +14,9 @@ namespace geosis::server {
 ///
 /// name   what people call the volume, for example its file's name.
 Json volume_document(const VolumeDescription& volume, const std::string& name);
+
+/// The geometry that a document's `transform` stands for: 16 numbers, row-major.
+AffineGeometry geometry_of(const std::array<double, 16>& transform);
 
 /// What a result needs to know of its volume.
 struct VolumeSummary {

@@ -1,6 +1,7 @@
 // Every file of the shared data folder opens with what its README states, or is refused for the stated reason.
 
-#include <cstdlib>
+#include "tests/support/shared_data.h"
+
 #include <filesystem>
 #include <memory>
 #include <ostream>
@@ -14,12 +15,6 @@
 
 namespace geosis {
 namespace {
-
-std::filesystem::path data_file(const std::string& name) {
-  const char* folder = std::getenv("GEOSIS_SHARED");
-  const auto shared = folder ? std::filesystem::path(folder) : std::filesystem::path(GEOSIS_SOURCE_DIR) / "../shared";
-  return shared / "data" / name;
-}
 
 /// A file's bytes, unzipped when they are gzip.
 std::vector<std::byte> read_bytes(const std::filesystem::path& path) {
@@ -53,9 +48,9 @@ class SharedSurvey : public testing::TestWithParam<Opens> {};
 
 TEST_P(SharedSurvey, OpensAsItsReadmeStates) {
   const Opens& expected = GetParam();
-  if (!exists(data_file(expected.file))) GTEST_SKIP() << data_file(expected.file) << " is absent";
+  if (!exists(shared_file(expected.file))) GTEST_SKIP() << shared_file(expected.file) << " is absent";
   NoProgress unwatched;
-  const auto source = open_file(data_file(expected.file));
+  const auto source = open_file(shared_file(expected.file));
   ASSERT_TRUE(source) << source.error().message;
   const auto volume = import_volume(**source, {}, std::nullopt, unwatched);
   ASSERT_TRUE(volume) << volume.error().message;
@@ -115,8 +110,8 @@ class SharedNonsense : public testing::TestWithParam<Refused> {};
 
 TEST_P(SharedNonsense, IsRefusedByName) {
   const Refused& expected = GetParam();
-  if (!exists(data_file(expected.file))) GTEST_SKIP() << data_file(expected.file) << " is absent";
-  const auto volume = import_bytes(read_bytes(data_file(expected.file)), {});
+  if (!exists(shared_file(expected.file))) GTEST_SKIP() << shared_file(expected.file) << " is absent";
+  const auto volume = import_bytes(read_bytes(shared_file(expected.file)), {});
   ASSERT_FALSE(volume);
   EXPECT_EQ(volume.error().code, expected.code) << volume.error().message;
   EXPECT_NE(volume.error().message.find(expected.reason), std::string::npos) << volume.error().message;
@@ -138,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Refused{"segy-cases/segyio-multi-text.sgy", ErrorCode::unsupported, "1 sample"}));
 
 TEST(SharedPrestack, OpensWhenTheDuplicatesAreNamed) {
-  const auto path = data_file("segy-cases/segyio-small-ps.sgy");
+  const auto path = shared_file("segy-cases/segyio-small-ps.sgy");
   if (!exists(path)) GTEST_SKIP() << path << " is absent";
   const auto bytes = read_bytes(path);
   const auto volume = import_bytes(bytes, {.duplicates = DuplicateTraces::first});
@@ -148,7 +143,7 @@ TEST(SharedPrestack, OpensWhenTheDuplicatesAreNamed) {
 }
 
 TEST(SharedF3, LiesOnItsBinsInTheWorld) {
-  const auto path = data_file("seismic/f3_crop_int16.sgy");
+  const auto path = shared_file("seismic/f3_crop_int16.sgy");
   if (!exists(path)) GTEST_SKIP() << path << " is absent";
   const auto bytes = read_bytes(path);
   const auto volume = import_bytes(bytes, {});
@@ -179,8 +174,8 @@ class SharedRaw : public testing::TestWithParam<RawFile> {};
 
 TEST_P(SharedRaw, OpensWithItsRangeAndSamples) {
   const RawFile& expected = GetParam();
-  if (!exists(data_file(expected.file))) GTEST_SKIP() << data_file(expected.file) << " is absent";
-  const auto bytes = read_bytes(data_file(expected.file));
+  if (!exists(shared_file(expected.file))) GTEST_SKIP() << shared_file(expected.file) << " is absent";
+  const auto bytes = read_bytes(shared_file(expected.file));
   const auto volume = import_bytes(bytes, {.byte_order = expected.byte_order,
                                            .dims = expected.shape,
                                            .dtype = expected.dtype,

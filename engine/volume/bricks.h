@@ -39,6 +39,7 @@ struct BrickView {
   const float* samples = nullptr;
   GridIndex first;
   GridShape extent;
+  std::shared_ptr<const void> owner = nullptr;  ///< keeps samples alive that were put together for this view
 };
 
 /// A volume cut into bricks, with its min/max index: what extraction reads. Immutable; any thread may read it.

@@ -3,21 +3,17 @@
 #include <algorithm>
 
 namespace geosis {
-namespace {
 
-LocalBox clip(const BrickView& view, const GridBox& region) {
+LocalBox clip_to_region(GridIndex origin, GridShape extent, const GridBox& region) {
   LocalBox box;
   for (int axis = 0; axis < 3; ++axis) {
-    const int origin = view.first[axis];
-    box.first[axis] = std::max(region.first[axis] - origin, 0);
-    box.last[axis] = std::min(region.last[axis] - origin, view.extent[axis] - 1);
-    box.has_previous[axis] = region.first[axis] < origin;
-    box.has_next[axis] = region.last[axis] > origin + view.extent[axis] - 1;
+    box.first[axis] = std::max(region.first[axis] - origin[axis], 0);
+    box.last[axis] = std::min(region.last[axis] - origin[axis], extent[axis] - 1);
+    box.has_previous[axis] = region.first[axis] < origin[axis];
+    box.has_next[axis] = region.last[axis] > origin[axis] + extent[axis] - 1;
   }
   return box;
 }
-
-}  // namespace
 
 BrickField::BrickField(const BrickedVolume& volume, IsoRange range, const ExtractOptions& options)
     : volume_(volume),
@@ -32,7 +28,7 @@ Result<void> BrickField::load(std::size_t brick) {
   auto view = volume_.brick(brick);
   if (!view) return std::move(view).error();
   view_ = *view;
-  box_ = clip(view_, region_);
+  box_ = clip_to_region(view_.first, view_.extent, region_);
   const auto rows = static_cast<std::size_t>(view_.extent.crosslines),
              length = static_cast<std::size_t>(view_.extent.samples);
   for (int a = 0; a < view_.extent.inlines; ++a) {

@@ -21,6 +21,9 @@ struct LocalBox {
   std::array<bool, 3> has_previous{}, has_next{};  ///< another brick of the region begins or goes on here
 };
 
+/// origin   the brick's first node; extent: its nodes. The brick has a node in the region.
+LocalBox clip_to_region(GridIndex origin, GridShape extent, const GridBox& region);
+
 /// Calls visit(n) for every bit n that is set, lowest first.
 template <class Visit>
 void each_bit(std::uint64_t bits, Visit&& visit) {
@@ -56,8 +59,10 @@ class BrickField {
   std::uint64_t nodes_in_region() const { return bits_between(box_.first[2], box_.last[2]); }
   std::uint64_t cells_in_region() const { return bits_between(box_.first[2], box_.last[2] - 1); }
 
-  float sample(int a, int b, int c) const {
-    return view_.samples[(static_cast<std::size_t>(a) * view_.extent.crosslines + b) * view_.extent.samples + c];
+  float sample(int a, int b, int c) const { return *samples_from(a, b, c); }
+  /// The row's samples from that node on.
+  const float* samples_from(int a, int b, int c) const {
+    return view_.samples + ((static_cast<std::size_t>(a) * view_.extent.crosslines + b) * view_.extent.samples + c);
   }
   /// Corners of a cell above the sheet's level, as bits.
   std::uint8_t corners_above(int sheet, int a, int b, int c) const;

@@ -23,6 +23,9 @@ class BrickMesher {
   /// cost     one pass over the brick's samples, then O(active cells).
   Result<BrickMesh> mesh(std::size_t brick);
 
+  /// The brick that was meshed last.
+  const BrickField& field() const { return field_; }
+
  private:
   void fill_cells(int a, int b);
   void fill_cell(int sheet, int a, int b, int c);

@@ -165,4 +165,22 @@ unsigned CellPresence::around_node(int a, int b, int c) const {
   return cells;
 }
 
+std::uint64_t CellPresence::edges_of_cells(int axis, int a, int b) const {
+  if (axis == 2) return row(a - 1, b - 1) | row(a - 1, b) | row(a, b - 1) | row(a, b);
+  const int i = axis == 1 ? a - 1 : a, j = axis == 0 ? b - 1 : b;
+  const std::uint64_t cells = row(i, j) | row(a, b);
+  return cells | cells << 1 | before_row(i, j) | before_row(a, b);
+}
+
+std::uint64_t CellPresence::nodes_of_cells(int a, int b) const {
+  return edges_of_cells(0, a - 1, b) | edges_of_cells(0, a, b);
+}
+
+std::uint64_t CellPresence::surrounded_nodes(int a, int b) const {
+  const std::uint64_t cells = row(a - 1, b - 1) & row(a - 1, b) & row(a, b - 1) & row(a, b);
+  const std::uint64_t before =
+      before_row(a - 1, b - 1) & before_row(a - 1, b) & before_row(a, b - 1) & before_row(a, b);
+  return cells & (cells << 1 | before);
+}
+
 }  // namespace geosis

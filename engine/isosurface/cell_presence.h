@@ -33,6 +33,12 @@ class CellPresence {
   /// Cells around a node as bits 4 di + 2 dj + dk, each 0 = before the node, 1 = after.
   unsigned around_node(int a, int b, int c) const;
 
+  /// Edges along `axis` (nodes) of row (a, b), as bits, with a present cell around them.
+  std::uint64_t edges_of_cells(int axis, int a, int b) const;
+  std::uint64_t nodes_of_cells(int a, int b) const;
+  /// Nodes of the row whose 8 cells are all present.
+  std::uint64_t surrounded_nodes(int a, int b) const;
+
  private:
   static constexpr int kCells = kBrickSamples + 1;  // -1 .. 63
   static std::size_t row_at(int a, int b) {

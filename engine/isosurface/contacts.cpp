@@ -56,16 +56,39 @@ NodeCopies make_copies(unsigned cells) {
   return copies;
 }
 
-std::array<NodeCopies, 256> make_all_copies() {
-  std::array<NodeCopies, 256> all;
-  for (unsigned cells = 0; cells < 256; ++cells) all[cells] = make_copies(cells);
+/// Gives the cell and all it is joined to, across faces, the group's number.
+void spread_group(unsigned cells, int octant, std::int8_t number, CellGroups& groups) {
+  if (!is_present(cells, octant) || groups.group[octant] >= 0) return;
+  groups.group[octant] = number;
+  for (int axis = 0; axis < 3; ++axis) spread_group(cells, octant ^ cell::corner_bit(axis), number, groups);
+}
+
+CellGroups make_groups(unsigned cells) {
+  CellGroups groups;
+  groups.group.fill(-1);
+  for (int octant = 0; octant < 8; ++octant) {
+    if (!is_present(cells, octant) || groups.group[octant] >= 0) continue;
+    spread_group(cells, octant, static_cast<std::int8_t>(groups.count++), groups);
+  }
+  return groups;
+}
+
+template <class Entry>
+std::array<Entry, 256> make_table(Entry (*make)(unsigned)) {
+  std::array<Entry, 256> all;
+  for (unsigned cells = 0; cells < 256; ++cells) all[cells] = make(cells);
   return all;
 }
 
 }  // namespace
 
 const NodeCopies& node_copies(unsigned around_node) {
-  static const std::array<NodeCopies, 256> all = make_all_copies();
+  static const std::array<NodeCopies, 256> all = make_table(make_copies);
+  return all[around_node];
+}
+
+const CellGroups& cell_groups(unsigned around_node) {
+  static const std::array<CellGroups, 256> all = make_table(make_groups);
   return all[around_node];
 }
 

@@ -13,9 +13,9 @@ namespace geosis {
 
 /// One filled sample of a brick.
 struct FilledSample {
-  std::uint32_t place = 0;        ///< in the brick's samples, as BrickView numbers them
-  float value = 0;                ///< finite
-  std::uint8_t reliability = 0;   ///< 0 (a guess) .. 254; a measured sample has 255
+  std::uint32_t place = 0;       ///< in the brick's samples, as BrickView numbers them
+  float value = 0;               ///< finite
+  std::uint8_t reliability = 0;  ///< 0 (a guess) .. 254; a measured sample has 255
 };
 
 /// A volume whose missing samples have been filled where the method could: measured samples are those of the volume

@@ -10,7 +10,7 @@
 #include "engine/base/result.h"
 #include "engine/volume/brick_format.h"
 #include "engine/volume/bricks.h"
-#include "engine/volume/mapped_file.h"
+#include "engine/volume/new_file.h"
 
 namespace geosis {
 
@@ -27,10 +27,6 @@ class BrickWriter {
   /// unnamed temporary file. errors: invalid_argument, limit_exceeded (axes), no_space, unavailable.
   static Result<BrickWriter> create(GridShape shape, const std::optional<std::filesystem::path>& path);
 
-  BrickWriter(BrickWriter&&) noexcept = default;
-  BrickWriter& operator=(BrickWriter&&) = delete;
-  ~BrickWriter();
-
   /// Samples k0, k0 + 1, ... of the trace at (i, j), finite or NaN. Calls for different nodes may run at once.
   void put(std::int32_t i, std::int32_t j, std::int32_t k0, std::span<const float> samples);
 
@@ -39,12 +35,10 @@ class BrickWriter {
   Result<std::unique_ptr<BrickedVolume>> finish(int threads, Progress& progress) &&;
 
  private:
-  BrickWriter(const BrickFilePlan& plan, std::unique_ptr<MappedFile> file) : plan_(plan), file_(std::move(file)) {}
-  Result<void> publish();
+  BrickWriter(const BrickFilePlan& plan, NewFile file) : plan_(plan), file_(std::move(file)) {}
 
   BrickFilePlan plan_;
-  std::unique_ptr<MappedFile> file_;
-  std::filesystem::path path_, unfinished_;  ///< both empty for an unnamed file
+  NewFile file_;
 };
 
 }  // namespace geosis

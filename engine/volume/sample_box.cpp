@@ -38,9 +38,8 @@ void copy_shared(const BrickView& brick, SampleBox& box) {
 }  // namespace
 
 Result<SampleBox> read_box(const BrickedVolume& volume, const GridBox& box) {
-  SampleBox result{box.first,
-                   {box.last.i - box.first.i + 1, box.last.j - box.first.j + 1, box.last.k - box.first.k + 1},
-                   {}};
+  SampleBox result{
+      box.first, {box.last.i - box.first.i + 1, box.last.j - box.first.j + 1, box.last.k - box.first.k + 1}, {}};
   result.value.resize(static_cast<std::size_t>(result.shape.count()));
   const BrickLayout layout(volume.shape());
   BrickSpan span[3];

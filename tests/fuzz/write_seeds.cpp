@@ -4,10 +4,13 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include "engine/missing/fill.h"
+#include "engine/volume/brick_file.h"
 #include "engine/volume/brick_writer.h"
 #include "engine/volume/formats/segy_write.h"
 
@@ -63,6 +66,17 @@ bool write_brick_seed(const std::filesystem::path& folder) {
   return std::move(*writer).finish(1, unwatched).has_value();
 }
 
+// Of the volume that the fuzz target knows.
+bool write_fill_seed(const std::filesystem::path& folder) {
+  std::vector<float> samples(3 * 2 * 66);
+  for (std::size_t n = 0; n < samples.size(); ++n)
+    samples[n] = n % 7 == 3 ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(n);
+  const auto volume = geosis::make_bricked_volume({3, 2, 66}, samples);
+  geosis::NoProgress unwatched;
+  return geosis::fill_missing(*volume, {.method = geosis::FillMethod::linear}, folder / "filled", 1, unwatched)
+      .has_value();
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -72,9 +86,10 @@ int main(int count, char** arguments) {
   }
   const std::filesystem::path folder = arguments[1];
   std::error_code failed;
-  for (const char* target : {"fuzz_import_segy", "fuzz_import_raw", "fuzz_brick_file"})
+  for (const char* target : {"fuzz_import_segy", "fuzz_import_raw", "fuzz_brick_file", "fuzz_fill_file"})
     std::filesystem::create_directories(folder / target, failed);
   const bool written = !failed && write_segy_seed(folder / "fuzz_import_segy") &&
-                       write_raw_seed(folder / "fuzz_import_raw") && write_brick_seed(folder / "fuzz_brick_file");
+                       write_raw_seed(folder / "fuzz_import_raw") && write_brick_seed(folder / "fuzz_brick_file") &&
+                       write_fill_seed(folder / "fuzz_fill_file");
   return written ? 0 : 1;
 }

@@ -1,0 +1,139 @@
+#include "engine/missing/distance_limit.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/base/parallel.h"
+
+namespace geosis {
+namespace {
+
+/// Squared distances to valid samples within one layer of samples, line by line.
+///
+/// Each site's squares make a parabola; their lower envelope is swept once forwards (which site rules from where) and
+/// once backwards (its value). Source: Meijster, Roerdink, Hesselink 2000, in integers throughout.
+class Envelope {
+ public:
+  explicit Envelope(std::int32_t longest)
+      : site_(static_cast<std::size_t>(longest)), from_(site_.size()), height_(site_.size()) {}
+
+  /// Replaces g(x) by the smallest g(u) + (x - u)^2; values from `far` on count as none.
+  void lower(std::int64_t* line, std::size_t stride, std::int32_t n, std::int64_t far) {
+    std::ptrdiff_t top = -1;
+    for (std::int32_t u = 0; u < n; ++u) {
+      const std::int64_t g = line[static_cast<std::size_t>(u) * stride];
+      height_[static_cast<std::size_t>(u)] = g;
+      if (g >= far) continue;
+      while (top >= 0 && at(from(top), site(top)) > at(from(top), u)) --top;
+      const std::int64_t begin = top < 0 ? 0 : 1 + last_of(site(top), u);
+      if (begin >= n) continue;
+      ++top;
+      site_[static_cast<std::size_t>(top)] = u;
+      from_[static_cast<std::size_t>(top)] = static_cast<std::int32_t>(begin);
+    }
+    for (std::int32_t x = n - 1; x >= 0 && top >= 0; --x) {
+      line[static_cast<std::size_t>(x) * stride] = std::min(far, at(x, site(top)));
+      if (x == from(top)) --top;
+    }
+  }
+
+ private:
+  std::int32_t site(std::ptrdiff_t s) const { return site_[static_cast<std::size_t>(s)]; }
+  std::int32_t from(std::ptrdiff_t s) const { return from_[static_cast<std::size_t>(s)]; }
+  std::int64_t at(std::int32_t x, std::int32_t u) const {
+    return height_[static_cast<std::size_t>(u)] + std::int64_t{x - u} * (x - u);
+  }
+  /// The last x at which u is at least as near as v > u; the caller knows that there is one.
+  std::int64_t last_of(std::int32_t u, std::int32_t v) const {
+    const std::int64_t heights = height_[static_cast<std::size_t>(v)] - height_[static_cast<std::size_t>(u)];
+    return (std::int64_t{v} * v - std::int64_t{u} * u + heights) / (2 * std::int64_t{v - u});
+  }
+
+  std::vector<std::int32_t> site_, from_;
+  std::vector<std::int64_t> height_;
+};
+
+class Limit {
+ public:
+  Limit(double limit, const NodeSet& valid, BitLines& nodes, const Progress& progress)
+      : limit_(limit), shape_(valid.shape()), valid_(valid), nodes_(nodes), progress_(progress) {
+    far_ = static_cast<std::int64_t>(std::min(limit * limit, 1e15)) + 1;
+  }
+
+  /// 64 layers of samples, which share words of bits.
+  void drop_in(std::size_t word) {
+    std::vector<std::int64_t> squares;
+    Envelope envelope(std::max(shape_.inlines, shape_.crosslines));
+    const std::int32_t end = std::min(static_cast<std::int32_t>(word + 1) * 64, shape_.samples);
+    for (std::int32_t k = static_cast<std::int32_t>(word) * 64; k < end && !progress_.cancelled(); ++k) {
+      if (all_near_on_an_axis(k)) continue;
+      squares.resize(static_cast<std::size_t>(shape_.inlines) * static_cast<std::size_t>(shape_.crosslines));
+      if (measure(k, squares, envelope)) drop_far(k, squares);
+    }
+  }
+
+ private:
+  bool all_near_on_an_axis(std::int32_t k) const {
+    std::size_t trace = 0;
+    for (std::int32_t i = 0; i < shape_.inlines; ++i)
+      for (std::int32_t j = 0; j < shape_.crosslines; ++j, ++trace)
+        if (nodes_.test(trace, k) && !near_on_an_axis({i, j, k})) return false;
+    return true;
+  }
+  bool near_on_an_axis(GridIndex node) const {
+    for (int axis = 2; axis >= 0; --axis) {
+      const auto [before, after] = valid_.neighbours(axis, node);
+      if (before >= 0 && node[axis] - before <= limit_) return true;
+      if (after >= 0 && after - node[axis] <= limit_) return true;
+    }
+    return false;
+  }
+  /// False when cancelled.
+  bool measure(std::int32_t k, std::span<std::int64_t> squares, Envelope& envelope) const {
+    const auto crosslines = static_cast<std::size_t>(shape_.crosslines);
+    std::size_t trace = 0;
+    for (std::int32_t i = 0; i < shape_.inlines; ++i) {
+      if (progress_.cancelled()) return false;
+      for (std::int32_t j = 0; j < shape_.crosslines; ++j, ++trace) squares[trace] = square_on_trace({i, j, k});
+      envelope.lower(&squares[trace - crosslines], 1, shape_.crosslines, far_);
+    }
+    for (std::size_t j = 0; j < crosslines && !progress_.cancelled(); ++j)
+      envelope.lower(&squares[j], crosslines, shape_.inlines, far_);
+    return !progress_.cancelled();
+  }
+  std::int64_t square_on_trace(GridIndex node) const {
+    if (valid_.contains(node)) return 0;
+    const auto [before, after] = valid_.neighbours(2, node);
+    std::int64_t square = far_;
+    for (const std::int32_t next : {before, after})
+      if (next >= 0) square = std::min(square, std::int64_t{next - node.k} * (next - node.k));
+    return square;
+  }
+  void drop_far(std::int32_t k, std::span<const std::int64_t> squares) {
+    for (std::size_t trace = 0; trace < squares.size(); ++trace)
+      if (static_cast<double>(squares[trace]) > limit_ * limit_)
+        nodes_.line(trace)[static_cast<std::size_t>(k) / 64] &= ~(std::uint64_t{1} << k % 64);
+  }
+
+  double limit_;
+  std::int64_t far_;
+  GridShape shape_;
+  const NodeSet& valid_;
+  BitLines& nodes_;
+  const Progress& progress_;
+};
+
+}  // namespace
+
+void drop_beyond(double limit, const NodeSet& valid, BitLines& nodes, int threads, const Progress& progress) {
+  double diagonal = 0;
+  for (int axis = 0; axis < 3; ++axis) diagonal += double(valid.shape()[axis]) * valid.shape()[axis];
+  if (limit * limit >= diagonal) return;
+  Limit dropper(limit, valid, nodes, progress);
+  parallel_for(nodes.words(), threads, [&](std::size_t word) { dropper.drop_in(word); });
+}
+
+}  // namespace geosis

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include "engine/codec/attribute_arrays.h"
+
 namespace geosis {
 namespace {
 
@@ -61,11 +63,28 @@ Result<void> check_triangles(const std::vector<Triangle>& triangles, std::size_t
   return {};
 }
 
+Result<void> check_attributes(const VertexAttributes& attributes, std::size_t vertices) {
+  auto fit = visit_arrays([&](const char* name, auto array) -> Result<void> {
+    const std::size_t values = (attributes.*array).size();
+    if (values == 0 || values == vertices) return {};
+    return invalid(std::to_string(values) + " values of the attribute " + name + " for " + std::to_string(vertices) +
+                   " vertices");
+  });
+  if (!fit) return fit;
+  for (std::size_t v = 0; v < attributes.body.size(); ++v) {
+    if (attributes.body[v] <= kMaxBody) continue;
+    return invalid("vertex " + std::to_string(v) + ": body " + std::to_string(attributes.body[v]) + "; at most " +
+                   std::to_string(kMaxBody));
+  }
+  return {};
+}
+
 }  // namespace
 
-Result<void> check_level(const IndexedMesh& mesh, const EncodeOptions& options) {
+Result<void> check_level(const IndexedMesh& mesh, const VertexAttributes& attributes, const EncodeOptions& options) {
   if (auto options_fit = check_options(options); !options_fit) return options_fit;
   if (auto on_lattice = check_positions(mesh.positions, options.position_bits); !on_lattice) return on_lattice;
+  if (auto attributes_fit = check_attributes(attributes, mesh.positions.size()); !attributes_fit) return attributes_fit;
   return check_triangles(mesh.triangles, mesh.positions.size());
 }
 

@@ -4,6 +4,8 @@
 #include <limits>
 #include <span>
 
+#include "engine/codec/attribute_arrays.h"
+
 namespace geosis {
 namespace {
 
@@ -36,6 +38,17 @@ std::vector<std::uint32_t> number_seams(const std::vector<bool>& shared) {
   return seams;
 }
 
+/// The values of the vertices `used`, for each array that there is.
+VertexAttributes pick_attributes(const VertexAttributes& attributes, const std::vector<std::int32_t>& used) {
+  VertexAttributes picked;
+  for_each_array([&](const char*, auto array) {
+    if ((attributes.*array).empty()) return;
+    (picked.*array).reserve(used.size());
+    for (const std::int32_t v : used) (picked.*array).push_back((attributes.*array)[v]);
+  });
+  return picked;
+}
+
 }  // namespace
 
 PartPlan plan_parts(const IndexedMesh& mesh, std::int32_t max_part_triangles) {
@@ -51,7 +64,7 @@ PartPlan plan_parts(const IndexedMesh& mesh, std::int32_t max_part_triangles) {
   return plan;
 }
 
-MeshPart cut_part(const IndexedMesh& mesh, const PartPlan& plan, std::size_t part) {
+MeshPart cut_part(const IndexedMesh& mesh, const VertexAttributes& attributes, const PartPlan& plan, std::size_t part) {
   const std::span<const Triangle> triangles = triangles_of(mesh, plan, part);
   std::int32_t lowest = std::numeric_limits<std::int32_t>::max(), highest = 0;
   for (const auto& [a, b, c] : triangles) {
@@ -65,12 +78,15 @@ MeshPart cut_part(const IndexedMesh& mesh, const PartPlan& plan, std::size_t par
   }
 
   MeshPart result;
+  std::vector<std::int32_t> used;
   for (std::int32_t v = lowest; v <= highest; ++v) {
     if (local[v - lowest] == kUnused) continue;
-    local[v - lowest] = static_cast<std::int32_t>(result.mesh.positions.size());
+    local[v - lowest] = static_cast<std::int32_t>(used.size());
+    used.push_back(v);
     result.mesh.positions.push_back(mesh.positions[v]);
     if (!plan.seams.empty()) result.seams.push_back(plan.seams[v]);
   }
+  result.attributes = pick_attributes(attributes, used);
   result.mesh.triangles.reserve(triangles.size());
   for (const auto& [a, b, c] : triangles) {
     result.mesh.triangles.push_back({local[a - lowest], local[b - lowest], local[c - lowest]});

@@ -19,9 +19,9 @@ struct PartPlan {
 /// As few parts as hold at most max_part_triangles each, equal in size to within one triangle.
 PartPlan plan_parts(const IndexedMesh& mesh, std::int32_t max_part_triangles);
 
-/// Part `part` with the vertices it uses, in the level's order.
+/// Part `part` with the vertices it uses, in the level's order, and what those carry.
 ///
 /// cost   O(triangles of the part + the range of vertex indices that they span).
-MeshPart cut_part(const IndexedMesh& mesh, const PartPlan& plan, std::size_t part);
+MeshPart cut_part(const IndexedMesh& mesh, const VertexAttributes& attributes, const PartPlan& plan, std::size_t part);
 
 }  // namespace geosis

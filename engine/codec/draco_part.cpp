@@ -10,6 +10,8 @@
 #include <draco/compression/expert_encode.h>
 #include <draco/mesh/mesh.h>
 
+#include "engine/codec/attribute_arrays.h"
+
 namespace geosis {
 namespace {
 
@@ -36,12 +38,34 @@ int add_positions(draco::Mesh& mesh, const std::vector<Vec3f>& positions) {
   return add_attribute(mesh, draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32, positions);
 }
 
-int add_seams(draco::Mesh& mesh, const std::vector<std::uint32_t>& seams) {
-  const int id = add_attribute(mesh, draco::GeometryAttribute::GENERIC, 1, draco::DT_UINT32, seams);
+template <class T>
+constexpr draco::DataType kDataType = draco::DT_INVALID;
+template <>
+constexpr draco::DataType kDataType<std::uint8_t> = draco::DT_UINT8;
+template <>
+constexpr draco::DataType kDataType<std::uint32_t> = draco::DT_UINT32;
+template <>
+constexpr draco::DataType kDataType<float> = draco::DT_FLOAT32;
+
+/// One number a vertex under a name; nothing when there are no values. Draco predicts integers and copies float32 bit
+/// by bit, for it is not asked to quantise them.
+template <class T>
+draco::Status add_named(draco::Mesh& mesh, draco::ExpertEncoder& encoder, const char* name,
+                        const std::vector<T>& values) {
+  if (values.empty()) return draco::OkStatus();
+  const int id = add_attribute(mesh, draco::GeometryAttribute::GENERIC, 1, kDataType<T>, values);
   auto metadata = std::make_unique<draco::AttributeMetadata>();
-  metadata->AddEntryString(kNameEntry, kSeamName);
+  metadata->AddEntryString(kNameEntry, name);
   mesh.AddAttributeMetadata(id, std::move(metadata));
-  return id;
+  return encoder.SetAttributePredictionScheme(id, draco::PREDICTION_DIFFERENCE);
+}
+
+draco::Status add_everything_named(draco::Mesh& mesh, draco::ExpertEncoder& encoder, const MeshPart& part) {
+  draco::Status status = add_named(mesh, encoder, kSeamName, part.seams);
+  for_each_array([&](const char* name, auto array) {
+    if (status.ok()) status = add_named(mesh, encoder, name, part.attributes.*array);
+  });
+  return status;
 }
 
 void add_triangles(draco::Mesh& mesh, const std::vector<Triangle>& triangles) {
@@ -83,9 +107,7 @@ Result<EncodedPart> encode_with_draco(const MeshPart& part, const EncodeOptions&
   encoder.options().SetGlobalBool("split_mesh_on_seams", true);
   quantise_on_lattice(encoder, position, options.position_bits);
   draco::Status status = encoder.SetAttributePredictionScheme(position, draco::PREDICTION_DIFFERENCE);
-  if (status.ok() && !part.seams.empty()) {
-    status = encoder.SetAttributePredictionScheme(add_seams(mesh, part.seams), draco::PREDICTION_DIFFERENCE);
-  }
+  if (status.ok()) status = add_everything_named(mesh, encoder, part);
   draco::EncoderBuffer buffer;
   if (status.ok()) status = encoder.EncodeToBuffer(&buffer);
   if (!status.ok()) return Error{ErrorCode::internal, "Draco cannot encode: " + status.error_msg_string()};
@@ -123,14 +145,17 @@ Result<std::vector<Vec3f>> read_positions(const draco::Mesh& mesh) {
   return positions;
 }
 
-Result<std::vector<std::uint32_t>> read_seams(const draco::Mesh& mesh) {
-  const int id = mesh.GetAttributeIdByMetadataEntry(kNameEntry, kSeamName);
-  if (id < 0) return std::vector<std::uint32_t>{};
+/// Leaves the values empty when the mesh has nothing of that name.
+template <class T>
+Result<void> read_named(const draco::Mesh& mesh, const char* name, std::vector<T>& values) {
+  const int id = mesh.GetAttributeIdByMetadataEntry(kNameEntry, name);
+  if (id < 0) return {};
   const draco::PointAttribute* attribute = mesh.attribute(id);
-  if (!holds(attribute, 1, draco::DT_UINT32, sizeof(std::uint32_t))) {
-    return malformed("the Draco mesh has seam ids that are not one uint32 each");
+  if (!holds(attribute, 1, kDataType<T>, sizeof(T))) {
+    return malformed(std::string("the Draco mesh has another type of attribute under the name ") + name);
   }
-  return read_attribute<std::uint32_t>(*attribute, mesh.num_points());
+  values = read_attribute<T>(*attribute, mesh.num_points());
+  return {};
 }
 
 Result<std::vector<Triangle>> read_triangles(const draco::Mesh& mesh) {
@@ -159,11 +184,15 @@ Result<MeshPart> decode_with_draco(std::span<const std::byte> bytes) {
   }
   auto positions = read_positions(mesh);
   if (!positions) return std::move(positions).error();
-  auto seams = read_seams(mesh);
-  if (!seams) return std::move(seams).error();
   auto triangles = read_triangles(mesh);
   if (!triangles) return std::move(triangles).error();
-  return MeshPart{{*std::move(positions), *std::move(triangles)}, *std::move(seams)};
+  MeshPart part{{*std::move(positions), *std::move(triangles)}, {}, {}};
+  if (auto read = read_named(mesh, kSeamName, part.seams); !read) return std::move(read).error();
+  auto read = visit_arrays([&](const char* name, auto array) {  //
+    return read_named(mesh, name, part.attributes.*array);
+  });
+  if (!read) return std::move(read).error();
+  return part;
 }
 
 }  // namespace

@@ -47,18 +47,19 @@ int position_bits_for(std::int32_t longest_axis_samples) {
              : static_cast<int>(std::bit_width(static_cast<std::uint64_t>(last_node * kLatticeStepsPerVoxel)));
 }
 
-Result<EncodedLevel> encode_level(const IndexedMesh& mesh, const EncodeOptions& options, const Progress& progress) {
-  if (auto encodable = check_level(mesh, options); !encodable) return encodable.error();
+Result<EncodedLevel> encode_level(const IndexedMesh& mesh, const VertexAttributes& attributes,
+                                  const EncodeOptions& options, const Progress& progress) {
+  if (auto encodable = check_level(mesh, attributes, options); !encodable) return encodable.error();
   const PartPlan plan = plan_parts(mesh, options.max_part_triangles);
   auto parts = make_parts<EncodedPart>(plan.parts(), options.threads, progress, [&](std::size_t part) {
-    return encode_part(cut_part(mesh, plan, part), options);
+    return encode_part(cut_part(mesh, attributes, plan, part), options);
   });
   if (!parts) return std::move(parts).error();
   return EncodedLevel{*std::move(parts)};
 }
 
-Result<IndexedMesh> decode_level(const std::vector<std::span<const std::byte>>& parts, int threads,
-                                 const Progress& progress) {
+Result<DecodedLevel> decode_level(const std::vector<std::span<const std::byte>>& parts, int threads,
+                                  const Progress& progress) {
   if (parts.empty()) return Error{ErrorCode::malformed_input, "a level without parts"};
   auto decoded =
       make_parts<MeshPart>(parts.size(), threads, progress, [&](std::size_t part) { return decode_part(parts[part]); });

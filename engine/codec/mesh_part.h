@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/mesh/indexed_mesh.h"
+#include "engine/mesh/vertex_attributes.h"
 
 namespace geosis {
 
@@ -13,7 +14,8 @@ namespace geosis {
 /// part.
 struct MeshPart {
   IndexedMesh mesh;
-  std::vector<std::uint32_t> seams;
+  std::vector<std::uint32_t> seams = {};
+  VertexAttributes attributes = {};
 };
 
 }  // namespace geosis

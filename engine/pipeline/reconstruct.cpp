@@ -81,7 +81,7 @@ Result<LodHierarchy> simplify(IndexedMesh m0, const Run& run) {
 
 Result<EncodedLevel> encode(const IndexedMesh& mesh, const Run& run) {
   const StageTimer timer(run.timings.encode);
-  return encode_level(mesh, run.encode, run.progress);
+  return encode_level(mesh, {}, run.encode, run.progress);
 }
 
 /// What a client will see of the level.
@@ -89,7 +89,9 @@ Result<IndexedMesh> decode(const EncodedLevel& encoded, const Run& run) {
   const StageTimer timer(run.timings.certify);
   std::vector<std::span<const std::byte>> parts;
   for (const EncodedPart& part : encoded.parts) parts.emplace_back(part.bytes);
-  return decode_level(parts, run.options.threads, run.progress);
+  auto decoded = decode_level(parts, run.options.threads, run.progress);
+  if (!decoded) return std::move(decoded).error();
+  return std::move(decoded->mesh);
 }
 
 void describe(const IndexedMesh& decoded, const Run& run, ReconstructedLevel& level) {

@@ -19,7 +19,7 @@ Error write_failed(const std::filesystem::path& path) {
   return {ErrorCode::unavailable, "writing " + path.filename().string() + " failed"};
 }
 
-Result<IndexedMesh> read_level(const Json& entry, int level, const PartReader& read_part, int threads) {
+Result<DecodedLevel> read_level(const Json& entry, int level, const PartReader& read_part, int threads) {
   std::vector<std::vector<std::byte>> parts;
   for (int p = 0; p < static_cast<int>(entry.at("parts").size()); ++p) {
     auto bytes = read_part(level, p);
@@ -36,27 +36,27 @@ int position_bits_of(const IndexedMesh& mesh) {
   return position_bits_for(static_cast<std::int32_t>(std::ceil(longest)) + 1);
 }
 
-Result<void> write_drc(std::ostream& out, const IndexedMesh& mesh, const std::array<double, 16>& transform) {
-  const EncodeOptions options{.position_bits = position_bits_of(mesh),
+Result<void> write_drc(std::ostream& out, const DecodedLevel& level, const std::array<double, 16>& transform) {
+  const EncodeOptions options{.position_bits = position_bits_of(level.mesh),
                               .max_part_triangles = std::numeric_limits<std::int32_t>::max(),
                               .transform = transform};
-  const auto encoded = encode_level(mesh, options);
+  const auto encoded = encode_level(level.mesh, level.attributes, options);
   if (!encoded) return encoded.error();
   const auto& bytes = encoded->parts.front().bytes;
   out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   return {};
 }
 
-Result<void> write_mesh(std::ostream& out, const IndexedMesh& mesh, LevelFormat format,
-                        const std::array<double, 16>& transform) {
+Result<void> write_level(std::ostream& out, const DecodedLevel& level, LevelFormat format,
+                         const std::array<double, 16>& transform) {
   const auto map = [geometry = geometry_of(transform)](Vec3d p) { return geometry.map(p); };
   switch (format) {
     case LevelFormat::drc:
-      return write_drc(out, mesh, transform);
+      return write_drc(out, level, transform);
     case LevelFormat::ply:
-      return write_ply(out, mesh, map);
+      return write_ply(out, level.mesh, level.attributes, map);
     case LevelFormat::obj:
-      return write_obj(out, mesh, map);
+      return write_obj(out, level.mesh, map);
   }
   return {};
 }
@@ -85,13 +85,13 @@ std::string level_file_name(int level, LevelFormat format) {
 
 Result<Json> export_level(const std::filesystem::path& path, const Json& manifest, int level, LevelFormat format,
                           const PartReader& read_part, int threads, Progress& progress) {
-  const auto mesh = read_level(manifest.at("levels").at(static_cast<std::size_t>(level)), level, read_part, threads);
-  if (!mesh) return mesh.error();
+  const auto decoded = read_level(manifest.at("levels").at(static_cast<std::size_t>(level)), level, read_part, threads);
+  if (!decoded) return decoded.error();
   if (progress.cancelled()) return Error{ErrorCode::cancelled, "the export was cancelled"};
   {
     std::ofstream out(path, std::ios::binary | std::ios::trunc);
     const auto transform = manifest.at("transform").get<std::array<double, 16>>();
-    if (auto written = write_mesh(out, *mesh, format, transform); !written) return std::move(written).error();
+    if (auto written = write_level(out, *decoded, format, transform); !written) return std::move(written).error();
     out.close();
     if (!out) return write_failed(path);
   }

@@ -30,7 +30,8 @@ Result<void> write_exports(OutputFolder& folder, const IndexedMesh& mesh, std::s
                            const PositionMap& to_space) {
   const std::string name = "lod" + std::to_string(level);
   if (formats.ply) {
-    auto written = folder.write(name + ".ply", [&](std::ostream& stream) { return write_ply(stream, mesh, to_space); });
+    auto written =
+        folder.write(name + ".ply", [&](std::ostream& stream) { return write_ply(stream, mesh, {}, to_space); });
     if (!written) return written;
   }
   if (formats.obj) {

@@ -36,11 +36,13 @@ std::string compare(const MeshCensus& found, const SurfaceTopology& expected, bo
 Result<IndexedMesh> encoded_and_decoded(const IndexedMesh& mesh, GridShape shape) {
   const std::int32_t longest = std::max({shape.inlines, shape.crosslines, shape.samples});
   const auto part = static_cast<std::int32_t>(mesh.triangles.size() / 3 + 1);
-  auto level = encode_level(mesh, {.position_bits = position_bits_for(longest), .max_part_triangles = part});
+  auto level = encode_level(mesh, {}, {.position_bits = position_bits_for(longest), .max_part_triangles = part});
   if (!level) return level.error();
   std::vector<std::span<const std::byte>> parts;
   for (const EncodedPart& encoded : level->parts) parts.emplace_back(encoded.bytes);
-  return decode_level(parts);
+  auto decoded = decode_level(parts);
+  if (!decoded) return std::move(decoded).error();
+  return std::move(decoded->mesh);
 }
 
 }  // namespace

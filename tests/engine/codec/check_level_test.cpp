@@ -13,7 +13,7 @@ namespace {
 const IndexedMesh kBox = test::box({1, 2, 3}, {4, 5, 6});
 
 void expect_refused(const IndexedMesh& mesh, const std::string& reason, const EncodeOptions& options = {}) {
-  const auto encoded = encode_level(mesh, options);
+  const auto encoded = encode_level(mesh, {}, options);
   ASSERT_FALSE(encoded) << reason;
   EXPECT_EQ(encoded.error().code, ErrorCode::invalid_argument);
   EXPECT_NE(encoded.error().message.find(reason), std::string::npos) << encoded.error().message;
@@ -32,7 +32,7 @@ IndexedMesh box_with_triangle(Triangle triangle) {
 }
 
 TEST(CheckLevel, AcceptsABoxOnTheLattice) {
-  EXPECT_TRUE(check_level(kBox, {}));
+  EXPECT_TRUE(check_level(kBox, {}, {}));
 }
 
 TEST(CheckLevel, RefusesPositionsThatAreNotFinite) {
@@ -51,8 +51,8 @@ TEST(CheckLevel, RefusesPositionsOutOfRange) {
 }
 
 TEST(CheckLevel, AcceptsTheEndsOfTheRange) {
-  EXPECT_TRUE(check_level(box_with_position(0), {}));
-  EXPECT_TRUE(check_level(box_with_position(256 - kLatticeStep), {}));
+  EXPECT_TRUE(check_level(box_with_position(0), {}, {}));
+  EXPECT_TRUE(check_level(box_with_position(256 - kLatticeStep), {}, {}));
 }
 
 TEST(CheckLevel, RefusesBadIndices) {

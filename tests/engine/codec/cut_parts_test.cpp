@@ -17,7 +17,7 @@ TEST(PlanParts, OnePartHasNoSeams) {
   const PartPlan plan = plan_parts(kStrip, 4);
   EXPECT_EQ(plan.parts(), 1u);
   EXPECT_TRUE(plan.seams.empty());
-  EXPECT_TRUE(cut_part(kStrip, plan, 0).seams.empty());
+  EXPECT_TRUE(cut_part(kStrip, {}, plan, 0).seams.empty());
 }
 
 TEST(PlanParts, NumbersVerticesThatSeveralPartsUse) {
@@ -34,7 +34,7 @@ TEST(PlanParts, SizesDifferByOneAtMost) {
 }
 
 TEST(CutPart, RenumbersVerticesInTheirOrder) {
-  const MeshPart part = cut_part(kStrip, plan_parts(kStrip, 2), 1);
+  const MeshPart part = cut_part(kStrip, {}, plan_parts(kStrip, 2), 1);
   EXPECT_EQ(part.mesh.positions, (std::vector<Vec3f>{{1, 0, 0}, {1, 1, 0}, {2, 0, 0}, {2, 1, 0}}));
   EXPECT_EQ(part.mesh.triangles, (std::vector<Triangle>{{0, 2, 1}, {2, 3, 1}}));
   EXPECT_EQ(part.seams, (std::vector<std::uint32_t>{1, 2, 0, 0}));

@@ -46,6 +46,20 @@ TEST(EncodePart, WithoutSeamsThereIsOnlyThePosition) {
   EXPECT_EQ(mesh->num_attributes(), 1);
 }
 
+TEST(EncodePart, AttributesAreGenericUnderTheirNames) {
+  MeshPart part = box_part();
+  part.attributes = {{1, 2, 3, 4, 5, 6, 7, 8}, {1, 1, 1, 1, 2, 2, 2, 2}, {0, 1, 2, 3, 4, 5, 6, 7}};
+  const auto mesh = read_with_draco(*encode_part(part, {}));
+  for (const auto& [name, type] :
+       {std::pair{"reliability", draco::DT_UINT8}, {"body", draco::DT_UINT32}, {"value", draco::DT_FLOAT32}}) {
+    const int id = mesh->GetAttributeIdByMetadataEntry("name", name);
+    ASSERT_GE(id, 0) << name;
+    EXPECT_EQ(mesh->attribute(id)->attribute_type(), draco::GeometryAttribute::GENERIC);
+    EXPECT_EQ(mesh->attribute(id)->data_type(), type);
+    EXPECT_EQ(mesh->attribute(id)->num_components(), 1);
+  }
+}
+
 TEST(DecodePart, SeamIdsStayWithTheirVertices) {
   const MeshPart part = box_part();
   const auto decoded = decode_part(encode_part(part, {})->bytes);

@@ -24,14 +24,14 @@ void expect_refused(std::vector<MeshPart> parts, const std::string& reason) {
 TEST(JoinParts, VerticesWithOneSeamIdBecomeOne) {
   const auto joined = join_parts(square_in_two_parts());
   ASSERT_TRUE(joined) << joined.error().message;
-  EXPECT_EQ(joined->positions, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
-  EXPECT_EQ(joined->triangles, (std::vector<Triangle>{{0, 1, 2}, {2, 3, 0}}));
+  EXPECT_EQ(joined->mesh.positions, (std::vector<Vec3f>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
+  EXPECT_EQ(joined->mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {2, 3, 0}}));
 }
 
 TEST(JoinParts, EqualPositionsWithoutSeamIdStayApart) {
   auto parts = square_in_two_parts();
   for (MeshPart& part : parts) part.seams.clear();
-  EXPECT_EQ(join_parts(parts)->positions.size(), 6u);
+  EXPECT_EQ(join_parts(parts)->mesh.positions.size(), 6u);
 }
 
 TEST(JoinParts, RefusesPartsThatDisagreeOnAPosition) {

@@ -28,8 +28,8 @@ TEST(EncodeLevel, StopsBeforeTheNextPartWhenCancelled) {
     bool cancelled() const override { return true; }
   };
   const IndexedMesh mesh = test::sphere({32, 32, 32}, 20, 30, 40);
-  EXPECT_EQ(encode_level(mesh, kTinyParts, Cancelled()).error().code, ErrorCode::cancelled);
-  const auto encoded = encode_level(mesh, kTinyParts);
+  EXPECT_EQ(encode_level(mesh, {}, kTinyParts, Cancelled()).error().code, ErrorCode::cancelled);
+  const auto encoded = encode_level(mesh, {}, kTinyParts);
   ASSERT_TRUE(encoded);
   std::vector<std::span<const std::byte>> parts;
   for (const EncodedPart& part : encoded->parts) parts.emplace_back(part.bytes);
@@ -75,8 +75,8 @@ TEST(EncodeLevel, PinchedPartBordersAreJoinedAgain) {
   std::mt19937 random(7);
   std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), random);
   const PartPlan plan = plan_parts(mesh, kTinyParts.max_part_triangles);
-  const auto part = decode_part(encode_part(cut_part(mesh, plan, 0), kTinyParts)->bytes);
-  ASSERT_GT(part->mesh.positions.size(), cut_part(mesh, plan, 0).mesh.positions.size());
+  const auto part = decode_part(encode_part(cut_part(mesh, {}, plan, 0), kTinyParts)->bytes);
+  ASSERT_GT(part->mesh.positions.size(), cut_part(mesh, {}, plan, 0).mesh.positions.size());
   expect_round_trip(mesh, kTinyParts);
 }
 
@@ -101,7 +101,7 @@ TEST(EncodeLevel, FurthestLatticePositionComesBackAtEveryBitCount) {
 }
 
 TEST(EncodeLevel, PartsAreEqualInSizeAndNeverTooLarge) {
-  const auto encoded = encode_level(test::sheet(10, 0), {.max_part_triangles = 60});  // 200 triangles
+  const auto encoded = encode_level(test::sheet(10, 0), {}, {.max_part_triangles = 60});  // 200 triangles
   ASSERT_TRUE(encoded);
   ASSERT_EQ(encoded->parts.size(), 4u);
   for (const EncodedPart& part : encoded->parts) EXPECT_EQ(part.triangles, 50);
@@ -110,26 +110,26 @@ TEST(EncodeLevel, PartsAreEqualInSizeAndNeverTooLarge) {
 TEST(EncodeLevel, AnyNumberOfThreadsMakesTheSameBytes) {
   const IndexedMesh mesh = test::sphere({32, 32, 32}, 20, 30, 40);
   EncodeOptions options = kTinyParts;
-  const auto serial = encode_level(mesh, options);
+  const auto serial = encode_level(mesh, {}, options);
   options.threads = 4;
-  const auto parallel = encode_level(mesh, options);
+  const auto parallel = encode_level(mesh, {}, options);
   ASSERT_TRUE(serial);
   ASSERT_TRUE(parallel);
   ASSERT_EQ(serial->parts.size(), parallel->parts.size());
   for (std::size_t p = 0; p < serial->parts.size(); ++p) EXPECT_EQ(serial->parts[p].bytes, parallel->parts[p].bytes);
-  EXPECT_EQ(decode_level(bytes_of(*serial), 1)->triangles, decode_level(bytes_of(*serial), 4)->triangles);
+  EXPECT_EQ(decode_level(bytes_of(*serial), 1)->mesh.triangles, decode_level(bytes_of(*serial), 4)->mesh.triangles);
 }
 
 TEST(EncodeLevel, UnusedVerticesAreLeftOut) {
   IndexedMesh mesh = test::box({1, 2, 3}, {4, 5, 6});
   mesh.positions.push_back({7, 7, 7});
-  const auto decoded = decode_level(bytes_of(*encode_level(mesh, kWhole)));
+  const auto decoded = decode_level(bytes_of(*encode_level(mesh, {}, kWhole)));
   ASSERT_TRUE(decoded);
-  EXPECT_EQ(decoded->positions.size(), 8u);
+  EXPECT_EQ(decoded->mesh.positions.size(), 8u);
 }
 
 TEST(DecodeLevel, RefusesAMissingPart) {
-  const auto encoded = encode_level(test::sphere({32, 32, 32}, 20, 10, 10), kTinyParts);
+  const auto encoded = encode_level(test::sphere({32, 32, 32}, 20, 10, 10), {}, kTinyParts);
   auto parts = bytes_of(*encoded);
   parts.pop_back();
   const auto decoded = decode_level(parts);
@@ -144,7 +144,7 @@ TEST(DecodeLevel, RefusesALevelWithoutParts) {
 }
 
 TEST(DecodeLevel, NamesThePartThatIsDamaged) {
-  auto encoded = encode_level(test::sphere({32, 32, 32}, 20, 10, 10), kTinyParts);
+  auto encoded = encode_level(test::sphere({32, 32, 32}, 20, 10, 10), {}, kTinyParts);
   encoded->parts[1].bytes.resize(20);
   const auto decoded = decode_level(bytes_of(*encoded));
   ASSERT_FALSE(decoded);
@@ -157,7 +157,8 @@ TEST(DecodeLevel, DamagedBytesNeverCrash) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);
-  const auto encoded = encode_level(test::random_shapes(random, 3), {.position_bits = 12, .max_part_triangles = 60});
+  const auto encoded =
+      encode_level(test::random_shapes(random, 3), {}, {.position_bits = 12, .max_part_triangles = 60});
   ASSERT_TRUE(encoded);
   for (int trial = 0; trial < 500; ++trial) {
     EncodedLevel damaged = *encoded;
@@ -166,8 +167,8 @@ TEST(DecodeLevel, DamagedBytesNeverCrash) {
     if (trial % 8 == 0) bytes.resize(random() % bytes.size());
     const auto decoded = decode_level(bytes_of(damaged));
     if (!decoded) continue;
-    for (const Triangle& triangle : decoded->triangles) {
-      for (const std::int32_t v : triangle) ASSERT_LT(static_cast<std::size_t>(v), decoded->positions.size());
+    for (const Triangle& triangle : decoded->mesh.triangles) {
+      for (const std::int32_t v : triangle) ASSERT_LT(static_cast<std::size_t>(v), decoded->mesh.positions.size());
     }
   }
 }
@@ -179,7 +180,7 @@ TEST(EncodeLevel, DebiansDecoderReadsEveryPart) {
 #else
   const auto folder = std::filesystem::path(testing::TempDir()) / "geosis_codec_test";
   std::filesystem::create_directories(folder);
-  const auto encoded = encode_level(test::sphere({32, 32, 32}, 20, 12, 16), {.max_part_triangles = 100});
+  const auto encoded = encode_level(test::sphere({32, 32, 32}, 20, 12, 16), {}, {.max_part_triangles = 100});
   ASSERT_TRUE(encoded);
   ASSERT_GT(encoded->parts.size(), 1u);
   for (const EncodedPart& part : encoded->parts) {

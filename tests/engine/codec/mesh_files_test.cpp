@@ -19,6 +19,16 @@ Vec3d to_world(Vec3d p) {
   return {6'543'210.7 + p.x * 12.5 / 3, 432'100.1 - p.y / 7, p.z * 4};
 }
 
+const VertexAttributes kAttributes = [] {
+  VertexAttributes attributes;
+  for (std::size_t v = 0; v < kMesh.positions.size(); ++v) {
+    attributes.reliability.push_back(static_cast<std::uint8_t>(v % 256));
+    attributes.body.push_back(static_cast<std::uint32_t>(4'000'000'000 + v));
+    attributes.value.push_back(static_cast<float>(v) / 3);
+  }
+  return attributes;
+}();
+
 struct MeshFile {
   std::vector<Vec3d> positions;
   std::vector<Triangle> triangles;
@@ -74,8 +84,32 @@ void expect_mapped_mesh(const MeshFile& file) {
 
 TEST(WritePly, ReadsBackWithFullPrecision) {
   std::stringstream stream;
-  ASSERT_TRUE(write_ply(stream, kMesh, to_world));
+  ASSERT_TRUE(write_ply(stream, kMesh, {}, to_world));
   expect_mapped_mesh(read_ply(stream));
+}
+
+TEST(WritePly, AttributesFollowEachPosition) {
+  std::stringstream stream;
+  ASSERT_TRUE(write_ply(stream, kMesh, kAttributes, to_world));
+  std::string header;
+  for (std::string line; std::getline(stream, line) && line != "end_header";) header += line + "\n";
+  EXPECT_NE(header.find("property double z\nproperty uchar reliability\nproperty uint body\nproperty float value\n"),
+            std::string::npos)
+      << header;
+  for (std::size_t v = 0; v < kMesh.positions.size(); ++v) {
+    EXPECT_EQ(take<Vec3d>(stream), to_world(to_double(kMesh.positions[v])));
+    EXPECT_EQ(take<std::uint8_t>(stream), kAttributes.reliability[v]);
+    EXPECT_EQ(take<std::uint32_t>(stream), kAttributes.body[v]);
+    EXPECT_EQ(take<float>(stream), kAttributes.value[v]);
+  }
+  EXPECT_EQ(take<std::uint8_t>(stream), 3);
+  EXPECT_EQ(take<Triangle>(stream), kMesh.triangles[0]);
+}
+
+TEST(WritePly, AttributesThatAreAbsentAreNotDeclared) {
+  std::stringstream stream;
+  ASSERT_TRUE(write_ply(stream, kMesh, {.body = kAttributes.body}, {}));
+  EXPECT_NE(stream.str().find("property double z\nproperty uint body\nelement face"), std::string::npos);
 }
 
 TEST(WriteObj, ReadsBackWithFullPrecision) {
@@ -93,14 +127,14 @@ TEST(WriteObj, WithoutMapHoldsIndexCoordinates) {
 TEST(WritePly, FilesLargerThanTheBufferComeBackWhole) {
   const IndexedMesh mesh = test::sheet(100, 0);
   std::stringstream stream;
-  ASSERT_TRUE(write_ply(stream, mesh, {}));
+  ASSERT_TRUE(write_ply(stream, mesh, {}, {}));
   EXPECT_EQ(read_ply(stream).triangles, mesh.triangles);
 }
 
 TEST(WritePly, AFullDiskIsAnError) {
   std::stringstream stream;
   stream.setstate(std::ios::badbit);
-  for (const auto& written : {write_ply(stream, kMesh, {}), write_obj(stream, kMesh, {})}) {
+  for (const auto& written : {write_ply(stream, kMesh, {}, {}), write_obj(stream, kMesh, {})}) {
     ASSERT_FALSE(written);
     EXPECT_EQ(written.error().code, ErrorCode::unavailable);
   }

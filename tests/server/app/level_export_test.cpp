@@ -56,9 +56,9 @@ TEST_F(LevelExportTest, SeveralPartsBecomeOneMesh) {
   const auto bytes = service.extractions.part(id, 0, 0);
   ASSERT_TRUE(bytes);
   const std::string text = read_all(*bytes->stream);
-  const auto mesh = decode_level({std::as_bytes(std::span(text))});
-  ASSERT_TRUE(mesh);
-  const auto cut = encode_level(*mesh, {.position_bits = 11, .max_part_triangles = 100});
+  const auto decoded = decode_level({std::as_bytes(std::span(text))});
+  ASSERT_TRUE(decoded);
+  const auto cut = encode_level(decoded->mesh, {}, {.position_bits = 11, .max_part_triangles = 100});
   ASSERT_TRUE(cut);
   Json parts = Json::array();
   for (std::size_t n = 0; n < cut->parts.size(); ++n) parts.push_back(Json::object());
@@ -78,8 +78,8 @@ TEST_F(LevelExportTest, SeveralPartsBecomeOneMesh) {
   const std::string whole = read_all(**stream);
   const auto joined = decode_level({std::as_bytes(std::span(whole))});
   ASSERT_TRUE(joined);
-  EXPECT_EQ(joined->positions.size(), mesh->positions.size());
-  EXPECT_EQ(joined->triangles.size(), mesh->triangles.size());
+  EXPECT_EQ(joined->mesh.positions.size(), decoded->mesh.positions.size());
+  EXPECT_EQ(joined->mesh.triangles.size(), decoded->mesh.triangles.size());
 }
 
 }  // namespace

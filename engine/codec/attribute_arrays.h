@@ -1,0 +1,26 @@
+#pragma once
+
+#include "engine/base/result.h"
+#include "engine/mesh/vertex_attributes.h"
+
+namespace geosis {
+
+/// visit(name, member) -> Result<void> for each array of VertexAttributes in the order in which files carry them; stops
+/// at the first error. What is done to all arrays alike is written once, for a pointer to member.
+template <class Visit>
+Result<void> visit_arrays(const Visit& visit) {
+  if (auto done = visit("reliability", &VertexAttributes::reliability); !done) return done;
+  if (auto done = visit("body", &VertexAttributes::body); !done) return done;
+  return visit("value", &VertexAttributes::value);
+}
+
+/// visit(name, member) for each array, where nothing can fail.
+template <class Visit>
+void for_each_array(const Visit& visit) {
+  (void)visit_arrays([&](const char* name, auto array) -> Result<void> {
+    visit(name, array);
+    return {};
+  });
+}
+
+}  // namespace geosis

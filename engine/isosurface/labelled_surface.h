@@ -19,8 +19,8 @@ struct BodySamples {
     double mean = 0;
     float min = 0, max = 0;
   };
-  std::int64_t voxels = 0;             ///< nodes of the domain in the body; 0 for one that lies between nodes
-  std::optional<Amplitude> amplitude;  ///< when asked for, and voxels > 0
+  std::int64_t voxels = 0;               ///< nodes of the domain in the body; 0 for one that lies between nodes
+  std::optional<Amplitude> amplitude{};  ///< when asked for, and voxels > 0
 };
 
 /// The surface of a range with the bodies that it bounds: connected components of the solid {low <= f <= high}, each
@@ -37,8 +37,8 @@ struct LabelledSurface {
 };
 
 struct LabelOptions {
-  bool amplitudes = false;       ///< read every sample in range, also in bricks that hold no surface
-  std::vector<GridIndex> seeds;  ///< nodes whose bodies are wanted
+  bool amplitudes = false;         ///< read every sample in range, also in bricks that hold no surface
+  std::vector<GridIndex> seeds{};  ///< nodes whose bodies are wanted
 };
 
 /// extract_body, with labels.

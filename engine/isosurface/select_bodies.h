@@ -9,9 +9,9 @@ namespace geosis {
 
 /// Which bodies to keep; a body must pass every filter, and `largest` counts those that pass the others.
 struct BodyFilter {
-  bool seeded = false;                   ///< only bodies that hold one of the seeds
-  double min_voxels = 0;                 ///< only bodies with at least that volume_voxels
-  std::optional<std::uint32_t> largest;  ///< only so many
+  bool seeded = false;                     ///< only bodies that hold one of the seeds
+  double min_voxels = 0;                   ///< only bodies with at least that volume_voxels
+  std::optional<std::uint32_t> largest{};  ///< only so many
 };
 
 /// Removes the other bodies' vertices and triangles. What stays keeps its order; bodies are numbered 0, 1, 2, ... anew

@@ -35,8 +35,7 @@ struct Request {
 
 LabelledSurface label(const Request& request, int threads) {
   const auto volume = make_bricked_volume(request.field.shape, request.field.samples);
-  LabelOptions labels;
-  labels.amplitudes = true;
+  LabelOptions labels{.amplitudes = true};
   for_each_node(request.field.shape, [&](GridIndex n) { labels.seeds.push_back(n); });
   NoProgress progress;
   auto surface = extract_labelled_body(

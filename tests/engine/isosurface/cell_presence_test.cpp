@@ -55,6 +55,29 @@ TEST(CellPresence, SeesMissingSamplesAndRegionAcrossBricks) {
   }
 }
 
+TEST(CellPresence, RowsOfNodesAndEdgesAgreeWithTheCellsAroundThem) {
+  std::mt19937 random(6);
+  std::vector<float> samples(static_cast<std::size_t>(kShape.count()), 1.0f);
+  for (int n = 0; n < 30000; ++n) samples[random() % samples.size()] = std::nanf("");
+  const auto volume = make_bricked_volume(kShape, samples);
+  CellPresence presence;
+  ASSERT_TRUE(presence.load(*volume, {0, 0, 1}, whole(kShape)));
+  for (int a = 0; a < 64; ++a) {
+    for (int b = 0; b < 64; ++b) {
+      const std::uint64_t nodes = presence.nodes_of_cells(a, b), surrounded = presence.surrounded_nodes(a, b);
+      for (int c = 0; c < 64; ++c) {
+        const unsigned around = presence.around_node(a, b, c);
+        ASSERT_EQ((nodes >> c) & 1, around != 0u) << a << " " << b << " " << c;
+        ASSERT_EQ((surrounded >> c) & 1, around == 255u) << a << " " << b << " " << c;
+        for (int axis = 0; axis < 3; ++axis) {
+          ASSERT_EQ((presence.edges_of_cells(axis, a, b) >> c) & 1, presence.around_edge(axis, a, b, c) != 0u)
+              << axis << " " << a << " " << b << " " << c;
+        }
+      }
+    }
+  }
+}
+
 TEST(CellPresence, IsCompleteInsideAVolumeWithoutGaps) {
   const GridShape shape{190, 190, 190};
   const std::vector<float> samples(static_cast<std::size_t>(shape.count()), 0.0f);

@@ -1,7 +1,9 @@
 #include "engine/missing/axis_barycentre.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
+#include <cstdlib>
 #include <utility>
 
 namespace geosis {
@@ -50,6 +52,11 @@ LineUnions unite_lines(GridShape shape, const BitLines& valid) {
   return unions;
 }
 
+template <class Visit>
+void for_each_bit(std::uint64_t bits, const Visit& visit) {
+  for (; bits != 0; bits &= bits - 1) visit(std::countr_zero(bits));
+}
+
 bool is_dead(std::span<const std::uint64_t> trace) {
   return std::ranges::none_of(trace, [](std::uint64_t word) { return word != 0; });
 }
@@ -79,11 +86,6 @@ std::optional<BitLines> reached_nodes(GridShape shape, const BitLines& valid, co
   return reached;
 }
 
-GridIndex moved(GridIndex node, int axis, std::int32_t to) {
-  node[axis] = to;
-  return node;
-}
-
 }  // namespace
 
 Estimate combine(const std::array<std::array<Estimate, 2>, 3>& met) {
@@ -109,45 +111,120 @@ std::uint8_t reliability_of(double distance) {
   return static_cast<std::uint8_t>(254 / (1 + ratio * ratio * ratio) + 0.5);
 }
 
-AxisBarycentre::AxisBarycentre(const BrickViews& views, BitLines valid, Vec3d step_lengths,
-                               const std::vector<std::uint8_t>& inside, int threads, const Progress& progress)
-    : views_(views), step_lengths_(step_lengths), valid_(views.layout().shape(), std::move(valid), threads, progress) {
-  if (auto reached = reached_nodes(valid_.shape(), valid_.along_k(), inside))
-    reached_.emplace(valid_.shape(), *std::move(reached), threads, progress);
-}
+/// What the nodes of a row met, [axis][before, after][k].
+struct AxisBarycentre::Met {
+  std::array<std::array<Row, 2>, 3> found;
+  std::array<std::array<std::uint64_t, 2>, 3> nodes{};  ///< for which `found` holds
 
-Estimate AxisBarycentre::at(GridIndex node) const {
-  const Estimate first = from_valid(node);
-  return is_met(first) ? first : from_reached(node);
-}
-
-Estimate AxisBarycentre::from_valid(GridIndex node) const {
-  std::array<std::array<Estimate, 2>, 3> met;
-  for (int axis = 0; axis < 3; ++axis) {
-    const NodeSet::Neighbours next = valid_.neighbours(axis, node);
-    auto& [before, after] = met[static_cast<std::size_t>(axis)];
-    const double step = step_lengths_[axis];
-    if (next.before >= 0) before = {views_.at(moved(node, axis, next.before)), step * (node[axis] - next.before)};
-    if (next.after >= 0) after = {views_.at(moved(node, axis, next.after)), step * (next.after - node[axis])};
+  void add(int axis, int way, int k, Estimate estimate) {
+    const std::size_t side = way < 0 ? 0 : 1;
+    found[static_cast<std::size_t>(axis)][side][static_cast<std::size_t>(k)] = estimate;
+    nodes[static_cast<std::size_t>(axis)][side] |= std::uint64_t{1} << k;
   }
-  return combine(met);
+  std::uint64_t any() const {
+    return nodes[0][0] | nodes[0][1] | nodes[1][0] | nodes[1][1] | nodes[2][0] | nodes[2][1];
+  }
+  Estimate combined(int k) const {
+    std::array<std::array<Estimate, 2>, 3> met;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t side = 0; side < 2; ++side)
+        if ((nodes[axis][side] >> k & 1) != 0) met[axis][side] = found[axis][side][static_cast<std::size_t>(k)];
+    return combine(met);
+  }
+};
+
+AxisBarycentre::AxisBarycentre(const BrickViews& views, const BitLines& valid, Vec3d step_lengths,
+                               const std::vector<std::uint8_t>& inside)
+    : views_(views), valid_(valid), shape_(views.layout().shape()), step_lengths_(step_lengths) {
+  reached_ = reached_nodes(shape_, valid, inside);
 }
 
-Estimate AxisBarycentre::from_reached(GridIndex node) const {
-  if (!reached_) return {};
-  std::array<std::array<Estimate, 2>, 3> met;
-  for (int axis = 0; axis < 3; ++axis) {
-    const NodeSet::Neighbours next = reached_->neighbours(axis, node);
-    const std::int32_t places[2] = {next.before, next.after};
-    for (std::size_t side = 0; side < 2; ++side) {
-      if (places[side] < 0) continue;
-      // No node that is met here is valid: its line would have been met in the first step.
-      Estimate source = from_valid(moved(node, axis, places[side]));
-      source.distance += step_lengths_[axis] * (side == 0 ? node[axis] - places[side] : places[side] - node[axis]);
-      met[static_cast<std::size_t>(axis)][side] = source;
+void AxisBarycentre::estimate(const BrickRow& row, std::uint64_t nodes, Row& estimates) const {
+  const std::uint64_t left = nodes & ~from_valid(row, nodes, estimates);
+  if (left != 0 && reached_) from_reached(row, left, estimates);
+}
+
+/// Steps from trace to trace until every node of the row has met a member, or the volume ends:
+/// take(the other row, the nodes that meet their member there, steps).
+template <class Take>
+void AxisBarycentre::walk(const BrickRow& row, int axis, int way, std::uint64_t nodes, const BitLines& members,
+                          const Take& take) const {
+  BrickRow other = row;
+  std::int32_t& place = axis == 0 ? other.i : other.j;
+  const std::int32_t count = std::min(kBrickSamples, shape_.samples - row.first_k());
+  std::int32_t steps = 1;
+  for (place += way; place >= 0 && place < shape_[axis] && nodes != 0; place += way, ++steps) {
+    const std::uint64_t met = nodes & members.bits(trace(other.i, other.j), row.first_k(), count);
+    if (met == 0) continue;
+    take(other, met, steps);
+    nodes ^= met;
+  }
+}
+
+std::uint64_t AxisBarycentre::from_valid(const BrickRow& row, std::uint64_t nodes, Row& estimates) const {
+  Met met;
+  for (int axis = 0; axis < 2; ++axis) {
+    for (const int way : {-1, 1}) {
+      walk(row, axis, way, nodes, valid_, [&](const BrickRow& other, std::uint64_t found, std::int32_t steps) {
+        const float* samples = views_.row(other.i, other.j, other.brick_k);
+        for_each_bit(found, [&](int k) { met.add(axis, way, k, {samples[k], step_lengths_[axis] * steps}); });
+      });
     }
   }
-  return combine(met);
+  std::int32_t before = -1, after = -1;
+  float sample_before = 0, sample_after = 0;
+  bool known = false;
+  for_each_bit(nodes, [&](int k) {
+    const std::int32_t node = row.first_k() + k;
+    if (!known || (after >= 0 && node > after)) {  // neighbours in a gap have the same ends
+      const std::size_t line = trace(row.i, row.j);
+      before = valid_.before(line, node);
+      after = valid_.after(line, node);
+      if (before >= 0) sample_before = views_.at({row.i, row.j, before});
+      if (after >= 0) sample_after = views_.at({row.i, row.j, after});
+      known = true;
+    }
+    if (before >= 0) met.add(2, -1, k, {sample_before, step_lengths_[2] * (node - before)});
+    if (after >= 0) met.add(2, +1, k, {sample_after, step_lengths_[2] * (after - node)});
+  });
+  for_each_bit(met.any(), [&](int k) { estimates[static_cast<std::size_t>(k)] = met.combined(k); });
+  return met.any();
+}
+
+// No node that is met here is valid: its line would have been met in the first step.
+void AxisBarycentre::from_reached(const BrickRow& row, std::uint64_t nodes, Row& estimates) const {
+  Met met;
+  Row source;
+  for (int axis = 0; axis < 2; ++axis) {
+    for (const int way : {-1, 1}) {
+      walk(row, axis, way, nodes, *reached_, [&](const BrickRow& other, std::uint64_t found, std::int32_t steps) {
+        from_valid(other, found, source);
+        for_each_bit(found, [&](int k) {
+          const Estimate& own = source[static_cast<std::size_t>(k)];
+          met.add(axis, way, k, {own.value, own.distance + step_lengths_[axis] * steps});
+        });
+      });
+    }
+  }
+  for_each_bit(nodes, [&](int k) {
+    const std::int32_t node = row.first_k() + k;
+    const std::size_t line = trace(row.i, row.j);
+    const std::int32_t ends[2] = {reached_->before(line, node), reached_->after(line, node)};
+    for (const std::int32_t end : ends) {
+      if (end < 0) continue;
+      const Estimate own = one_from_valid({row.i, row.j, end});
+      met.add(2, end - node, k, {own.value, own.distance + step_lengths_[2] * std::abs(end - node)});
+    }
+  });
+  for_each_bit(nodes, [&](int k) { estimates[static_cast<std::size_t>(k)] = met.combined(k); });
+}
+
+Estimate AxisBarycentre::one_from_valid(GridIndex node) const {
+  const BrickRow row{node.i, node.j, std::min(node.k / kBrickCells, views_.layout().grid().samples - 1)};
+  Row estimates;
+  const int k = node.k - row.first_k();
+  from_valid(row, std::uint64_t{1} << k, estimates);
+  return estimates[static_cast<std::size_t>(k)];
 }
 
 }  // namespace geosis

@@ -73,7 +73,4 @@ class BitLines {
   std::vector<std::uint64_t> bits_;
 };
 
-/// Turns a square of bits: bit b of word a becomes bit a of word b.
-void transpose(std::span<std::uint64_t, 64> square);
-
 }  // namespace geosis

@@ -25,18 +25,17 @@ class BrickViews {
 
   const BrickLayout& layout() const { return layout_; }
   const BrickView& view(std::size_t brick) const { return views_[brick]; }
-  /// The brick that a node belongs to; on a shared layer, the one that begins there.
-  std::size_t brick_of(GridIndex node) const {
+  /// The samples of a trace that a layer of bricks holds.
+  const float* row(std::int32_t i, std::int32_t j, std::int32_t brick_k) const {
     const GridShape grid = layout_.grid();
-    return layout_.number({std::min(node.i / kBrickCells, grid.inlines - 1),
-                           std::min(node.j / kBrickCells, grid.crosslines - 1),
-                           std::min(node.k / kBrickCells, grid.samples - 1)});
+    const std::int32_t bi = std::min(i / kBrickCells, grid.inlines - 1);
+    const std::int32_t bj = std::min(j / kBrickCells, grid.crosslines - 1);
+    const BrickView& brick = views_[(static_cast<std::size_t>(bi) * grid.crosslines + bj) * grid.samples + brick_k];
+    return brick.samples + ((i - brick.first.i) * brick.extent.crosslines + (j - brick.first.j)) * brick.extent.samples;
   }
   float at(GridIndex node) const {
-    const BrickView& brick = views_[brick_of(node)];
-    const std::size_t row =
-        static_cast<std::size_t>(node.i - brick.first.i) * brick.extent.crosslines + (node.j - brick.first.j);
-    return brick.samples[row * brick.extent.samples + (node.k - brick.first.k)];
+    const std::int32_t brick_k = std::min(node.k / kBrickCells, layout_.grid().samples - 1);
+    return row(node.i, node.j, brick_k)[node.k - brick_k * kBrickCells];
   }
 
  private:

@@ -82,7 +82,8 @@ void for_bricks(std::size_t bricks, int threads, FillShare& share, const Work& w
 /// Filling of one volume, whose scan is done.
 class Filling {
  public:
-  Filling(const BrickedVolume& volume, const FillOptions& options, SurveyScan& scan, int threads, Progress& progress)
+  Filling(const BrickedVolume& volume, const FillOptions& options, const SurveyScan& scan, int threads,
+          Progress& progress)
       : volume_(volume),
         options_(options),
         scan_(scan),
@@ -90,7 +91,7 @@ class Filling {
         progress_(progress),
         inside_(traces_inside(volume.shape(), scan.valid)),
         nodes_(fillable_nodes(scan.valid, inside_)),
-        barycentre_(scan.views, std::move(scan.valid), scan.step_lengths, inside_, threads, progress) {}
+        barycentre_(scan.views, scan.valid, scan.step_lengths, inside_) {}
 
   Result<std::unique_ptr<FilledVolume>> run(const std::optional<std::filesystem::path>& path) {
     GapSolver solver;
@@ -99,7 +100,8 @@ class Filling {
       if (!made) return std::move(made).error();
       solver = *std::move(made);
     }
-    if (options_.max_distance) drop_beyond(*options_.max_distance, barycentre_.valid(), nodes_, threads_, progress_);
+    if (options_.max_distance)
+      drop_beyond(*options_.max_distance, volume_.shape(), scan_.valid, nodes_, threads_, progress_);
     auto writer = FillWriter::create(volume_, count_records(), path);
     if (!writer) return std::move(writer).error();
     write_linear(*writer, solver ? kStarted : kLinear);
@@ -125,7 +127,7 @@ class Filling {
   void index(FillWriter& writer, double begin) {
     FillShare share(progress_, begin, 1, layout().brick_count());
     for_bricks(layout().brick_count(), threads_, share, [&](std::size_t brick) {
-      const std::uint32_t valid = count_nodes(layout(), brick, barycentre_.valid().along_k());
+      const std::uint32_t valid = count_nodes(layout(), brick, scan_.valid);
       const auto all = static_cast<std::size_t>(layout().extent(layout().place(brick)).count());
       writer.index(brick, valid + writer.records(brick).size() < all);
     });
@@ -133,7 +135,7 @@ class Filling {
 
   const BrickedVolume& volume_;
   const FillOptions& options_;
-  SurveyScan& scan_;
+  const SurveyScan& scan_;
   int threads_;
   Progress& progress_;
   std::vector<std::uint8_t> inside_;

@@ -1,13 +1,18 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <memory>
+#include <utility>
 
 #include <benchmark/benchmark.h>
 
 #include "engine/base/progress.h"
+#include "engine/missing/inverse_distance.h"
 #include "engine/missing/plate_gaps.h"
 #include "engine/missing/thin_plate.h"
 #include "engine/missing/wide_plate.h"
+#include "engine/volume/brick_file.h"
 #include "tests/engine/missing/gap_boxes.h"
 #include "tests/support/random.h"
 
@@ -58,15 +63,19 @@ BENCHMARK(BM_WideGap)
     ->ArgsProduct({{20, 40, 60, 100}, {100, 15, 1}})
     ->Unit(benchmark::kMillisecond);
 
-/// Scattered single nodes in one box of 256^3. Argument: per mille missing.
+/// Scattered single nodes in a box. Arguments: nodes an axis, per mille missing.
 void BM_Points(benchmark::State& state) {
+  const auto size = static_cast<int>(state.range(0));
   test::Random random(2);
-  GapBox gap = layers_box({256, 256, 256});
-  const double share = static_cast<double>(state.range(0)) / 1000;
+  GapBox gap = layers_box({size, size, size});
+  const double share = static_cast<double>(state.range(1)) / 1000;
   test::knock_out(gap, [&](int, int, int) { return random.unit() < share; });
   run(state, gap, {1, 1, 2.5});
 }
-BENCHMARK(BM_Points)->ArgName("per_mille")->Arg(10)->Arg(50)->Arg(200)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_Points)
+    ->ArgNames({"nodes", "per_mille"})
+    ->ArgsProduct({{68, 256}, {10, 50, 200}})
+    ->Unit(benchmark::kMillisecond);
 
 /// Dead traces in one box of 64 x 64 x 256. Argument: percent missing.
 void BM_Traces(benchmark::State& state) {
@@ -78,6 +87,49 @@ void BM_Traces(benchmark::State& state) {
   run(state, gap, {1, 1, 2.5});
 }
 BENCHMARK(BM_Traces)->ArgName("percent")->Arg(10)->Arg(30)->Arg(50)->Unit(benchmark::kMillisecond);
+
+std::unique_ptr<BrickedVolume> bricked(GapBox gap) {
+  for (std::size_t at = 0; at < gap.state.size(); ++at)
+    if (gap.state[at] == NodeState::wanted) gap.samples.value[at] = std::numeric_limits<float>::quiet_NaN();
+  return make_bricked_volume(gap.samples.shape, gap.samples.value);
+}
+
+void fill_by_distance(benchmark::State& state, GapBox gap) {
+  const auto volume = bricked(gap);
+  NoProgress progress;
+  const auto method = InverseDistanceFill::build(*volume, {2, 1, 2.5}, 1, progress);
+  for (auto _ : state) {
+    const auto filled = method->fill(gap, progress);
+    benchmark::DoNotOptimize(filled.has_value());
+  }
+  set_rates(state, gap);
+}
+
+/// Scattered single nodes in 128^3. Argument: per mille missing.
+void BM_InverseDistancePoints(benchmark::State& state) {
+  test::Random random(4);
+  GapBox gap = layers_box({128, 128, 128});
+  const double share = static_cast<double>(state.range(0)) / 1000;
+  test::knock_out(gap, [&](int, int, int) { return random.unit() < share; });
+  fill_by_distance(state, std::move(gap));
+}
+BENCHMARK(BM_InverseDistancePoints)->ArgName("per_mille")->Arg(1)->Arg(10)->Arg(100)->Unit(benchmark::kMillisecond);
+
+/// A hole of 20 x 20 traces in 128^3.
+void BM_InverseDistanceHole(benchmark::State& state) {
+  GapBox gap = layers_box({128, 128, 128});
+  test::knock_out(gap, [](int i, int j, int) { return i >= 50 && i < 70 && j >= 50 && j < 70; });
+  fill_by_distance(state, std::move(gap));
+}
+BENCHMARK(BM_InverseDistanceHole)->Unit(benchmark::kMillisecond);
+
+/// The pyramid of 256^3 samples.
+void BM_InverseDistanceBuild(benchmark::State& state) {
+  const auto volume = bricked(layers_box({256, 256, 256}));
+  NoProgress progress;
+  for (auto _ : state) benchmark::DoNotOptimize(InverseDistanceFill::build(*volume, {2, 1, 2.5}, 1, progress));
+}
+BENCHMARK(BM_InverseDistanceBuild)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace geosis

@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
+
+#include "engine/pipeline/certify.h"
+#include "engine/pipeline/level_attributes.h"
+#include "engine/pipeline/output_space.h"
+#include "engine/pipeline/stages.h"
 
 namespace geosis {
 namespace {
@@ -24,31 +28,33 @@ class StageTimer {
   Clock::time_point start_;
 };
 
+template <class Stage>
+auto timed(double& seconds, const Stage& stage) {
+  const StageTimer timer(seconds);
+  return stage();
+}
+
 /// What all stages of one reconstruction share.
 struct Run {
+  const ReconstructInput& input;
   const ReconstructOptions& options;
-  const GridGeometry& space;  ///< from index coordinates to the requested space
+  const AffineGeometry& space;  ///< from index coordinates to the requested space
   EncodeOptions encode;
   Progress& progress;
   StageTimings& timings;
   const LevelSink& on_level;
+
+  CertifyOptions certify() const { return {space, input.has_lengths, options.threads}; }
 };
 
 const Error kCancelled = {ErrorCode::cancelled, "the reconstruction was cancelled"};
 
-bool same_mesh(const IndexedMesh& a, const IndexedMesh& b) {
-  return a.positions == b.positions && a.triangles == b.triangles;
-}
-
-Result<EncodeOptions> choose_encoding(GridShape shape, const GridGeometry& space, const ReconstructOptions& options) {
+Result<EncodeOptions> choose_encoding(GridShape shape, const AffineGeometry& space, const ReconstructOptions& options) {
   const int needed = position_bits_for(std::max({shape.inlines, shape.crosslines, shape.samples}));
   const int bits = options.position_bits.value_or(needed);
   if (bits < needed || bits > kMaxPositionBits) {
     return Error{ErrorCode::invalid_argument, "position bits " + std::to_string(bits) + "; this volume needs " +
                                                   std::to_string(needed) + ".." + std::to_string(kMaxPositionBits)};
-  }
-  if (space.affine() == nullptr) {
-    return Error{ErrorCode::unsupported, "world space of a grid that is not affine; ask for index space"};
   }
   EncodeOptions encode;
   encode.position_bits = bits;
@@ -58,15 +64,13 @@ Result<EncodeOptions> choose_encoding(GridShape shape, const GridGeometry& space
   return encode;
 }
 
-Result<IndexedMesh> extract(const BrickedVolume& volume, const Run& run) {
-  const StageTimer timer(run.timings.extract);
-  ExtractOptions extract;
-  extract.mode = run.options.mode;
-  extract.cap = run.options.cap;
-  extract.region = run.options.region.value_or(whole(volume.shape()));
-  extract.mirrored = run.space.mirrored();
-  extract.threads = run.options.threads;
-  return extract_body(volume, run.options.range, extract, run.progress);
+Result<void> check_attribute_volume(const ReconstructInput& input, const ReconstructOptions& options) {
+  if (!options.attributes.value) return {};
+  if (input.attribute_volume == nullptr) {
+    return Error{ErrorCode::invalid_argument, "the attribute \"value\" needs the volume that it is of"};
+  }
+  if (input.attribute_volume->shape() == input.samples.shape()) return {};
+  return Error{ErrorCode::invalid_argument, "the attribute volume has another shape than the volume"};
 }
 
 /// Level 0 is always M0, the reference of every certificate, whether or not the request asks for ratio 1.
@@ -79,9 +83,18 @@ Result<LodHierarchy> simplify(IndexedMesh m0, const Run& run) {
   return build_lods(std::move(m0), build, run.progress);
 }
 
-Result<EncodedLevel> encode(const IndexedMesh& mesh, const Run& run) {
+/// The level's values, its share of interpolated vertices, and its bytes.
+Result<void> encode(const AttributeSources& sources, const Run& run, ReconstructedLevel& level) {
   const StageTimer timer(run.timings.encode);
-  return encode_level(mesh, {}, run.encode, run.progress);
+  auto attributes = attributes_of(level.lod, sources, run.progress);
+  if (!attributes) return std::move(attributes).error();
+  level.attributes = *std::move(attributes);
+  level.interpolated_share = interpolated_share(level.attributes.reliability);
+  if (!run.options.attributes.reliability) level.attributes.reliability.clear();
+  auto encoded = encode_level(level.lod.mesh, level.attributes, run.encode, run.progress);
+  if (!encoded) return std::move(encoded).error();
+  level.encoded = *std::move(encoded);
+  return {};
 }
 
 /// What a client will see of the level.
@@ -96,22 +109,20 @@ Result<IndexedMesh> decode(const EncodedLevel& encoded, const Run& run) {
 
 void describe(const IndexedMesh& decoded, const Run& run, ReconstructedLevel& level) {
   const StageTimer timer(run.timings.certify);
-  level.topology = report_topology(decoded);
-  level.measures = measure_surface(decoded, run.space);
+  describe_level(decoded, run.certify(), level);
 }
 
 /// Encodes the levels from the coarsest on and describes what they decode to; the decoded meshes are returned for the
 /// comparison with M0, which nobody who waits for a picture should wait for.
-Result<std::vector<IndexedMesh>> encode_levels(std::vector<ReconstructedLevel>& levels, const Run& run) {
+Result<std::vector<IndexedMesh>> encode_levels(std::vector<ReconstructedLevel>& levels, const AttributeSources& sources,
+                                               const Run& run) {
   std::vector<IndexedMesh> decoded(levels.size());
   std::size_t triangles = 0, done = 0;
   for (const ReconstructedLevel& level : levels) triangles += level.lod.mesh.triangles.size();
   for (std::size_t k = levels.size(); k-- > 0;) {
     if (run.progress.cancelled()) return kCancelled;
     run.progress.report("encode", static_cast<double>(done) / static_cast<double>(triangles));
-    auto encoded = encode(levels[k].lod.mesh, run);
-    if (!encoded) return std::move(encoded).error();
-    levels[k].encoded = *std::move(encoded);
+    if (auto encoded = encode(sources, run, levels[k]); !encoded) return std::move(encoded).error();
     auto mesh = decode(levels[k].encoded, run);
     if (!mesh) return std::move(mesh).error();
     decoded[k] = *std::move(mesh);
@@ -123,29 +134,6 @@ Result<std::vector<IndexedMesh>> encode_levels(std::vector<ReconstructedLevel>& 
   return decoded;
 }
 
-/// Distance and volume drift of every level: none for M0 itself, the same for levels that stopped at the same floor.
-Result<void> compare_with_m0(std::vector<ReconstructedLevel>& levels, const std::vector<IndexedMesh>& decoded,
-                             const IndexedMesh& m0, const Run& run) {
-  const StageTimer timer(run.timings.certify);
-  const double m0_volume = measure_surface(m0, run.space).volume;
-  std::optional<ReferenceSurface> reference;
-  for (std::size_t k = levels.size(); k-- > 0;) {
-    if (run.progress.cancelled()) return kCancelled;
-    run.progress.report("certify", 1 - static_cast<double>(k + 1) / static_cast<double>(levels.size()));
-    ReconstructedLevel& level = levels[k];
-    if (same_mesh(level.lod.mesh, m0)) continue;
-    if (m0_volume != 0) level.volume_drift = (level.measures.volume - m0_volume) / m0_volume;
-    if (k + 1 < levels.size() && same_mesh(level.lod.mesh, levels[k + 1].lod.mesh)) {
-      level.distance = levels[k + 1].distance;
-      continue;
-    }
-    if (!reference) reference.emplace(m0, DistanceOptions{.threads = run.options.threads});
-    level.distance = reference->measure(decoded[k]);
-  }
-  run.progress.report("certify", 1);
-  return {};
-}
-
 /// The hierarchy's levels that were asked for: all of them, or all but M0.
 std::vector<ReconstructedLevel> take_levels(std::vector<LodLevel>&& lods, std::size_t first) {
   std::vector<ReconstructedLevel> levels(lods.size() - first);
@@ -153,43 +141,60 @@ std::vector<ReconstructedLevel> take_levels(std::vector<LodLevel>&& lods, std::s
   return levels;
 }
 
-Result<Reconstruction> run_stages(const BrickedVolume& volume, const Run& run) {
-  auto m0 = extract(volume, run);
-  if (!m0) return std::move(m0).error();
-  if (m0->triangles.empty()) return Reconstruction{};
-  if (run.progress.cancelled()) return kCancelled;
-
-  auto lods = simplify(*std::move(m0), run);
+/// Everything after M0.
+Result<Reconstruction> make_levels(LabelledSurface m0, const FilledVolume* filled, const Run& run) {
+  const std::vector<std::uint32_t> body = std::move(m0.body);
+  const AttributeSources sources{
+      .filled = filled,
+      .body = run.options.attributes.body ? std::span(body) : std::span<const std::uint32_t>(),
+      .value = run.options.attributes.value ? run.input.attribute_volume : nullptr,
+      .threads = run.options.threads};
+  auto lods = simplify(std::move(m0.mesh), run);
   if (!lods) return std::move(lods).error();
   const std::size_t asked = run.options.ratios.size();
   const bool m0_is_asked = lods->levels.size() == asked;
-  std::optional<IndexedMesh> m0_apart;
+  IndexedMesh m0_apart;
   if (!m0_is_asked) m0_apart = std::move(lods->levels.front().mesh);
 
   Reconstruction result{take_levels(std::move(lods->levels), m0_is_asked ? 0 : 1)};
-  auto decoded = encode_levels(result.levels, run);
+  auto decoded = encode_levels(result.levels, sources, run);
   if (!decoded) return std::move(decoded).error();
-  const IndexedMesh& reference = m0_apart ? *m0_apart : result.levels.front().lod.mesh;
-  if (auto compared = compare_with_m0(result.levels, *decoded, reference, run); !compared) return compared.error();
+  const IndexedMesh& reference = m0_is_asked ? result.levels.front().lod.mesh : m0_apart;
+  const StageTimer timer(run.timings.certify);
+  auto compared = compare_with_m0(result.levels, *decoded, reference, run.certify(), run.progress);
+  if (!compared) return std::move(compared).error();
   return result;
+}
+
+Result<Reconstruction> run_stages(const Run& run) {
+  auto samples = timed(run.timings.fill, [&] { return fill_stage(run.input, run.options, run.progress); });
+  if (!samples) return std::move(samples).error();
+  const ExtractStage stage{.bodies = run.options.attributes.body, .mirrored = run.space.mirrored()};
+  auto m0 = timed(run.timings.extract,
+                  [&] { return extract_stage(*samples->samples, run.options, stage, run.progress); });
+  if (!m0) return std::move(m0).error();
+  if (m0->mesh.triangles.empty()) return Reconstruction{};
+  if (run.progress.cancelled()) return kCancelled;
+  return make_levels(*std::move(m0), samples->filled, run);
 }
 
 }  // namespace
 
-Result<Reconstruction> reconstruct(const BrickedVolume& volume, const GridGeometry& geometry,
-                                   const ReconstructOptions& options, Progress& progress, StageTimings* timings,
-                                   const LevelSink& on_level) {
-  const AffineGeometry index_space;
-  const GridGeometry& space = options.index_space ? index_space : geometry;
-  auto encode = choose_encoding(volume.shape(), space, options);
+Result<Reconstruction> reconstruct(const ReconstructInput& input, const ReconstructOptions& options, Progress& progress,
+                                   StageTimings* timings, const LevelSink& on_level) {
+  const auto space = output_space(input.geometry, options);
+  if (!space) return space.error();
+  auto encode = choose_encoding(input.samples.shape(), *space, options);
   if (!encode) return std::move(encode).error();
+  if (auto checked = check_attribute_volume(input, options); !checked) return std::move(checked).error();
   StageTimings unread;
-  return run_stages(volume, {.options = options,
-                             .space = space,
-                             .encode = *encode,
-                             .progress = progress,
-                             .timings = timings != nullptr ? *timings : unread,
-                             .on_level = on_level});
+  return run_stages({.input = input,
+                     .options = options,
+                     .space = *space,
+                     .encode = *encode,
+                     .progress = progress,
+                     .timings = timings != nullptr ? *timings : unread,
+                     .on_level = on_level});
 }
 
 }  // namespace geosis

@@ -13,37 +13,72 @@
 #include "engine/base/result.h"
 #include "engine/codec/level_codec.h"
 #include "engine/isosurface/extract.h"
+#include "engine/isosurface/select_bodies.h"
 #include "engine/mesh/lod_hierarchy.h"
+#include "engine/mesh/vertex_attributes.h"
+#include "engine/missing/fill_options.h"
+#include "engine/missing/filled_volume.h"
 #include "engine/simplify/build_lods.h"
 #include "engine/volume/bricks.h"
 #include "engine/volume/geometry.h"
+#include "engine/volume/grid.h"
 
 namespace geosis {
 
 /// Raised only when output bytes change; part of every extraction id.
-inline constexpr int kResultVersion = 1;
+inline constexpr int kResultVersion = 2;
+
+/// Which values the vertices of every level carry. Reliability is left out where every sample was measured.
+struct AttributeChoice {
+  bool reliability = true, body = false, value = false;
+
+  bool operator==(const AttributeChoice&) const = default;
+};
+
+/// Which bodies to keep: those that hold a seed, of these the ones with enough volume, of these the largest.
+struct BodyChoice {
+  std::vector<GridIndex> seeds;  ///< nodes; none = any body
+  double min_voxels = 0;
+  std::optional<std::uint32_t> largest = std::nullopt;
+
+  bool keeps_all() const { return seeds.empty() && min_voxels <= 0 && !largest; }
+  BodyFilter filter() const { return {.seeded = !seeds.empty(), .min_voxels = min_voxels, .largest = largest}; }
+};
 
 /// The request's part that the engine computes from; documents/ turns JSON into it.
 struct ReconstructOptions {
   IsoRange range;
   BodyMode mode = BodyMode::exact;
   bool cap = true;
+  FillOptions fill = {};                         ///< of missing samples, before anything else
   std::optional<GridBox> region = std::nullopt;  ///< unset = the whole volume
+  BodyChoice bodies = {};
   std::vector<double> ratios = {1, 0.25, 0.0625, 0.015625, 0.00390625};
   bool index_space = false;                         ///< `space`: "index" instead of "world"
+  std::optional<double> velocity = std::nullopt;    ///< m/s: turns two-way time in ms into depth in m
+  AttributeChoice attributes = {};
+  std::optional<std::string> attribute_volume = std::nullopt;  ///< id of the volume that `value` is of
   std::optional<int> position_bits = std::nullopt;  ///< unset = chosen so that topology survives
   std::optional<int> speed = std::nullopt;          ///< unset = 7
   int threads = 1;
 };
 
+/// Two-sided distance between surfaces in the units of a space.
+struct SpaceDistance {
+  double mean = 0, max = 0;
+};
+
 /// One level with all that its manifest entry says.
 struct ReconstructedLevel {
   LodLevel lod;
+  VertexAttributes attributes;  ///< those asked for, of lod.mesh's vertices
   EncodedLevel encoded;
   TopologyReport topology;   ///< of the decoded parts, joined
   SurfaceMeasures measures;  ///< of the same, in the requested space
   SurfaceDistance distance;  ///< to M0; all zero for a level that is M0 itself
-  double volume_drift = 0;   ///< (volume - volume of M0) / volume of M0; 0 when M0 has none
+  std::optional<SpaceDistance> space_distance;  ///< the same in the requested space, if that has lengths
+  double volume_drift = 0;        ///< (volume - volume of M0) / volume of M0; 0 when M0 has none
+  double interpolated_share = 0;  ///< of the vertices: between samples of which one was filled
 };
 
 struct Reconstruction {
@@ -52,21 +87,29 @@ struct Reconstruction {
 
 /// Seconds of each stage, for the caller's eyes only: never part of a result.
 struct StageTimings {
-  double extract = 0, simplify = 0, encode = 0, certify = 0;
+  double fill = 0, extract = 0, simplify = 0, encode = 0, certify = 0;
 };
 
 /// Told of each level, coarsest first, as soon as it is encoded and its topology and measures are known; its distance
 /// and volume drift are not yet. Called on the thread that called reconstruct.
 using LevelSink = std::function<void(std::size_t level, const ReconstructedLevel&)>;
 
-/// The whole way: volume -> M0 -> levels -> encoded parts -> certificate. The only place where the order of stages is
-/// written down. The result is a pure function of volume, geometry and options (threads excepted).
+/// What a reconstruction reads. Everything is kept by reference.
+struct ReconstructInput {
+  const BrickedVolume& samples;    ///< as measured
+  const GridGeometry& geometry;    ///< from index coordinates to the world
+  bool has_lengths = true;         ///< the world's three axes have one unit: lengths, areas and volumes mean something
+  const FilledVolume* filled = nullptr;         ///< samples with options.fill applied; null = filled here when asked for
+  const BrickedVolume* attribute_volume = nullptr;  ///< of equal shape; what the attribute `value` is of
+};
+
+/// The whole way: volume -> filled volume -> M0 -> levels -> encoded parts -> certificate. The only place where the
+/// order of stages is written down. The result is a pure function of input and options (threads excepted).
 ///
-/// geometry   of the volume; the requested space is the world that it maps to, or the index space itself.
-/// errors     those of extract_body, build_lods and encode_level.  invalid_argument: position bits that cannot hold the
-///            volume.  unsupported: world space of a geometry that is not affine.  cancelled.
-Result<Reconstruction> reconstruct(const BrickedVolume& volume, const GridGeometry& geometry,
-                                   const ReconstructOptions& options, Progress& progress,
+/// errors     those of fill_missing, extract_body, build_lods and encode_level.  invalid_argument: position bits that
+///            cannot hold the volume, `value` without its volume, or with one of another shape.  unsupported: world
+///            space of a geometry that is not affine.  cancelled.
+Result<Reconstruction> reconstruct(const ReconstructInput& input, const ReconstructOptions& options, Progress& progress,
                                    StageTimings* timings = nullptr, const LevelSink& on_level = {});
 
 }  // namespace geosis

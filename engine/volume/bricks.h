@@ -61,4 +61,12 @@ class BrickedVolume {
   virtual Result<BrickView> brick(std::size_t brick) const = 0;
 };
 
+/// Whether any sample of the volume is missing, by its index alone.
+inline bool has_missing(const BrickedVolume& volume) {
+  for (std::size_t brick = 0; brick < volume.brick_count(); ++brick) {
+    if (volume.summary(brick).has_missing) return true;
+  }
+  return false;
+}
+
 }  // namespace geosis

@@ -14,7 +14,8 @@ ManifestUrls service_urls() {
   const auto level_path = [](std::size_t level) { return "lods/" + std::to_string(level); };
   return {.level = [=](std::size_t level, std::size_t) { return std::optional(level_path(level) + ".drc"); },
           .part = [=](std::size_t level, std::size_t part,
-                      std::size_t) { return level_path(level) + "/parts/" + std::to_string(part) + ".drc"; }};
+                      std::size_t) { return level_path(level) + "/parts/" + std::to_string(part) + ".drc"; },
+          .bodies = "bodies"};
 }
 
 /// Passes reports on, and stops the work when a part could not be kept.
@@ -40,9 +41,17 @@ Result<void> write_parts(const ReconstructedLevel& level, std::size_t number, co
 
 }  // namespace
 
-Result<Json> compute_extraction(Extraction& extraction, const VolumeSummary& volume, const BrickedVolume& samples,
-                                const ReconstructOptions& options, const ReconstructFunction& reconstruct,
-                                const PartWriter& write_part, Progress& progress, ExtractionTimings& timings) {
+ReconstructInput reconstruct_input(const ExtractionInput& input, const ReconstructOptions& options) {
+  return {.samples = input.samples,
+          .geometry = input.volume.geometry,
+          .has_lengths = has_lengths(input.volume, options),
+          .filled = input.filled,
+          .attribute_volume = input.attribute_volume};
+}
+
+Result<Json> compute_extraction(Extraction& extraction, const ExtractionInput& input, const ReconstructOptions& options,
+                                const ReconstructFunction& reconstruct, const PartWriter& write_part,
+                                Progress& progress, ExtractionTimings& timings) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
@@ -56,20 +65,21 @@ Result<Json> compute_extraction(Extraction& extraction, const VolumeSummary& vol
       stoppable.stop();
       return;
     }
-    if (timings.first_level == 0) timings.first_level = timings.load + seconds();
-    extraction.add_level(early_level_document(level, number, volume, options, urls));
+    if (timings.first_level == 0) timings.first_level = timings.load + timings.fill + seconds();
+    extraction.add_level(early_level_document(level, number, input.volume, options, urls));
   };
 
   StageTimings stages;
-  const auto result = reconstruct(samples, volume.geometry, options, stoppable, &stages, show_level);
+  const auto result = reconstruct(reconstruct_input(input, options), options, stoppable, &stages, show_level);
   if (failed) return *std::move(failed);
   if (!result) return result.error();
+  timings.total = timings.load + timings.fill + seconds();
+  timings.fill += stages.fill;
   timings.extract = stages.extract;
   timings.simplify = stages.simplify;
   timings.encode = stages.encode;
   timings.certify = stages.certify;
-  timings.total = timings.load + seconds();
-  return manifest_document(volume, options, *result, urls);
+  return manifest_document(input.volume, options, *result, urls);
 }
 
 }  // namespace geosis::server

@@ -9,17 +9,27 @@
 namespace geosis::server {
 
 /// What reconstruct() does; tests put something else in its place.
-using ReconstructFunction = std::function<Result<Reconstruction>(
-    const BrickedVolume&, const GridGeometry&, const ReconstructOptions&, Progress&, StageTimings*, const LevelSink&)>;
+using ReconstructFunction = std::function<Result<Reconstruction>(const ReconstructInput&, const ReconstructOptions&,
+                                                                 Progress&, StageTimings*, const LevelSink&)>;
 
 /// Keeps one encoded part until the extraction is read.
 using PartWriter = std::function<Result<void>(int level, int part, std::span<const std::byte> bytes)>;
 
+/// Volumes that an extraction reads, whoever holds them.
+struct ExtractionInput {
+  const VolumeSummary& volume;
+  const BrickedVolume& samples;
+  const FilledVolume* filled = nullptr;             ///< when the request fills and the fill is there already
+  const BrickedVolume* attribute_volume = nullptr;  ///< when the request names one
+};
+
+ReconstructInput reconstruct_input(const ExtractionInput& input, const ReconstructOptions& options);
+
 /// Computes an extraction: every part is kept, then its level shown, coarsest first; the manifest is returned.
 ///
-/// load_seconds   what opening the volume took.
-Result<Json> compute_extraction(Extraction& extraction, const VolumeSummary& volume, const BrickedVolume& samples,
-                                const ReconstructOptions& options, const ReconstructFunction& reconstruct,
-                                const PartWriter& write_part, Progress& progress, ExtractionTimings& timings);
+/// timings   load and fill are what came before; the others are set.
+Result<Json> compute_extraction(Extraction& extraction, const ExtractionInput& input, const ReconstructOptions& options,
+                                const ReconstructFunction& reconstruct, const PartWriter& write_part,
+                                Progress& progress, ExtractionTimings& timings);
 
 }  // namespace geosis::server

@@ -10,7 +10,7 @@ namespace {
 Json timings_document(const std::optional<ExtractionTimings>& timings) {
   if (!timings) return nullptr;
   return {{"load", timings->load},
-          {"fill", 0},
+          {"fill", timings->fill},
           {"extract", timings->extract},
           {"simplify", timings->simplify},
           {"encode", timings->encode},
@@ -135,6 +135,7 @@ Json resource_document(const Extraction& extraction) {
             {"events", self + "/events"},
             {"stream", self + "/stream"},
             {"manifest", self + "/manifest"},
+            {"bodies", self + "/bodies"},
             {"volume", "/v1/volumes/" + identity.volume}}}};
 }
 

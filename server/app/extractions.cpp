@@ -3,15 +3,19 @@
 #include <utility>
 
 #include "engine/base/digest.h"
+#include "engine/pipeline/describe_bodies.h"
 #include "server/app/level_export.h"
 #include "server/app/result_streams.h"
 #include "server/documents/ids.h"
+#include "server/documents/manifest.h"
 #include "server/documents/request.h"
+#include "server/documents/request_check.h"
 
 namespace geosis::server {
 namespace {
 
 constexpr const char* kRequest = "request.json";
+constexpr const char* kBodies = "bodies.json";
 constexpr const char* kManifest = "manifest.json";  // there = it is done
 constexpr const char* kCancelled = "cancelled.json";
 constexpr std::size_t kMostEntries = 512;
@@ -26,6 +30,24 @@ Error no_such_extraction(const std::string& id) {
   return {ErrorCode::not_found, "extraction " + id + ": there is no such extraction"};
 }
 
+Error not_done(const std::string& id, JobState state) {
+  return {ErrorCode::already_exists, "extraction " + id + ": it is " + name_of(state) + ", not done"};
+}
+
+/// Volumes that an extraction was computed from: when one of them goes, so does the result.
+std::vector<std::string> volumes_of(const Extraction::Identity& identity) {
+  std::vector<std::string> volumes{identity.volume};
+  const Json other = identity.request.value("attribute_volume", Json(nullptr));
+  if (other.is_string()) volumes.push_back(other.get<std::string>());
+  return volumes;
+}
+
+LevelFile bytes_file(std::vector<std::byte> bytes) {
+  LevelFile file{.sha256 = sha256_hex(bytes), .bytes = bytes.size(), .stream = nullptr, .transform = {}};
+  file.stream = bytes_stream(std::move(bytes));
+  return file;
+}
+
 std::string part_name(int level, int part) {
   return "parts/" + std::to_string(level) + "." + std::to_string(part) + ".drc";
 }
@@ -38,19 +60,6 @@ std::span<const std::byte> bytes_of(const std::string& text) {
 bool ends_without_result(const Extraction& extraction) {
   const JobState state = extraction.snapshot().state;
   return state == JobState::failed || state == JobState::cancelled || extraction.is_ending();
-}
-
-/// The region must lie in the volume: what cannot be computed is refused before anything is recorded.
-Result<void> check_region(const std::optional<GridBox>& region, GridShape shape) {
-  constexpr const char* kAxes[] = {"inline", "crossline", "sample"};
-  for (int axis = 0; region && axis < 3; ++axis) {
-    if (region->last[axis] < shape[axis]) continue;
-    return Error{ErrorCode::invalid_argument, "request /region/" + std::string(kAxes[axis]) + ": [" +
-                                                  std::to_string(region->first[axis]) + "," +
-                                                  std::to_string(region->last[axis]) + "]; the volume has nodes 0 to " +
-                                                  std::to_string(shape[axis] - 1)};
-  }
-  return {};
 }
 
 /// The parts of a transient extraction, kept in memory.
@@ -87,7 +96,8 @@ Extractions::Extractions(BlobStore& store, Volumes& volumes, JobQueue& queue, st
       queue_(queue),
       tenant_(std::move(tenant)),
       threads_(threads),
-      reconstruct_(std::move(reconstruct)) {}
+      reconstruct_(std::move(reconstruct)),
+      fills_(store, tenant_, threads) {}
 
 Result<Json> Extractions::read_document(const std::string& id, const char* name) const {
   if (!is_id(id)) return no_such_extraction(id);
@@ -125,9 +135,10 @@ Result<std::shared_ptr<Extraction>> Extractions::create(const std::string& volum
   if (!stored) return stored.error();
   auto options = parse_request(request);
   if (!options) return std::move(options).error();
-  const GridShape shape = (*stored)->summary.shape;
-  if (auto inside = check_region(options->region, shape); !inside) return std::move(inside).error();
-  Json canonical = request_document(*options, shape);
+  const VolumeSummary& summary = (*stored)->summary;
+  if (auto checked = check_request(*options, summary); !checked) return std::move(checked).error();
+  if (auto other = open_attribute_volume(*options, summary); !other) return std::move(other).error();
+  Json canonical = request_document(*options, summary.shape);
   const std::string id = extraction_id(volume, canonical, kResultVersion);
 
   const auto entry = entry_of(id);
@@ -164,7 +175,9 @@ Result<void> Extractions::record(const Extraction::Identity& identity) {
                        {"result_version", kResultVersion},
                        {"created_at", identity.created_at},
                        {"request", identity.request}};
-  if (auto done = write_document(result_key(identity.volume, identity.id), Json::object()); !done) return done;
+  for (const std::string& volume : volumes_of(identity)) {
+    if (auto done = write_document(result_key(volume, identity.id), Json::object()); !done) return done;
+  }
   if (auto done = write_document(key(identity.id, kRequest), record); !done) return done;
   const auto done = store_.remove(key(identity.id, kCancelled));
   return !done && done.error().code != ErrorCode::not_found ? done : Result<void>{};
@@ -184,22 +197,61 @@ Result<void> Extractions::start(std::shared_ptr<Extraction> extraction, Priority
 Result<void> Extractions::run(Extraction& extraction, Job& job) {
   const auto& identity = extraction.identity();
   ExtractionTimings timings;
-  const auto start = Clock::now();
-  const auto volume = volumes_.open(identity.volume);
-  if (!volume) return volume.error();
-  timings.load = seconds_since(start);
-  auto options = parse_request(identity.request);
-  if (!options) return std::move(options).error();
-  options->threads = threads_;
+  const auto opened = open(identity, job, timings);
+  if (!opened) return opened.error();
   const PartWriter write_part = [&](int level, int part, std::span<const std::byte> bytes) {
     return store_.put(key(identity.id, part_name(level, part)), bytes);
   };
-  auto manifest = compute_extraction(extraction, (*volume)->summary, *(*volume)->samples, *options, reconstruct_,
-                                     write_part, job, timings);
+  auto manifest =
+      compute_extraction(extraction, opened->input(), opened->options, reconstruct_, write_part, job, timings);
   if (!manifest) return std::move(manifest).error();
   if (auto done = write_document(key(identity.id, kManifest), *manifest); !done) return done;
   extraction.complete(*std::move(manifest), timings);
   return {};
+}
+
+ExtractionInput Extractions::Opened::input() const {
+  return {.volume = volume->summary,
+          .samples = *volume->samples,
+          .filled = filled ? filled->samples.get() : nullptr,
+          .attribute_volume = attribute_volume ? attribute_volume->samples.get() : nullptr};
+}
+
+Result<Extractions::Opened> Extractions::open(const Extraction::Identity& identity, Progress& progress,
+                                              ExtractionTimings& timings) {
+  const auto start = Clock::now();
+  auto options = parse_request(identity.request);
+  if (!options) return std::move(options).error();
+  options->threads = threads_;
+  auto volume = volumes_.open(identity.volume);
+  if (!volume) return std::move(volume).error();
+  auto other = open_attribute_volume(*options, (*volume)->summary);
+  if (!other) return std::move(other).error();
+  timings.load = seconds_since(start);
+  auto filled = fill(*volume, *options, progress);
+  if (!filled) return std::move(filled).error();
+  timings.fill = seconds_since(start) - timings.load;
+  return Opened{*std::move(options), *std::move(volume), *std::move(filled), *std::move(other)};
+}
+
+/// The volume that the attribute `value` is of; null when the request names none.
+Result<std::shared_ptr<const StoredVolume>> Extractions::open_attribute_volume(const ReconstructOptions& options,
+                                                                               const VolumeSummary& volume) {
+  if (!options.attribute_volume) return std::shared_ptr<const StoredVolume>();
+  auto other = volumes_.open(*options.attribute_volume);
+  if (!other) return Error{other.error().code, "request /attribute_volume: " + other.error().message};
+  if (auto fits = check_attribute_volume((*other)->summary, volume); !fits) return std::move(fits).error();
+  return other;
+}
+
+/// Null when nothing is to be filled.
+Result<std::shared_ptr<const FilledStoredVolume>> Extractions::fill(std::shared_ptr<const StoredVolume> volume,
+                                                                    const ReconstructOptions& options,
+                                                                    Progress& progress) {
+  if (options.fill.method == FillMethod::none || !has_missing(*volume->samples)) {
+    return std::shared_ptr<const FilledStoredVolume>();
+  }
+  return fills_.fill(std::move(volume), options.fill, progress);
 }
 
 Result<std::shared_ptr<Extraction>> Extractions::create_transient(const ByteSource& file, const UploadOptions& upload,
@@ -207,13 +259,16 @@ Result<std::shared_ptr<Extraction>> Extractions::create_transient(const ByteSour
                                                                   std::vector<GridCandidate>& candidates) {
   auto options = parse_request(request);
   if (!options) return std::move(options).error();
+  if (options->attribute_volume) {
+    return Error{ErrorCode::unsupported, "request /attribute_volume: a one-shot call has no other volume"};
+  }
   options->threads = threads_;
   auto imported = import_volume(file, upload.import, std::nullopt, progress, &candidates);
   if (!imported) return std::move(imported).error();
   const auto volume = std::make_shared<const ImportedVolume>(*std::move(imported));
   const auto shelf = std::make_shared<PartShelf>();
   const VolumeSummary summary = summarize(volume->description);
-  if (auto inside = check_region(options->region, summary.shape); !inside) return std::move(inside).error();
+  if (auto checked = check_request(*options, summary); !checked) return std::move(checked).error();
   Json canonical = request_document(*options, summary.shape);
   const std::string id = extraction_id(summary.id, canonical, kResultVersion);
   auto extraction =
@@ -228,8 +283,8 @@ Result<std::shared_ptr<Extraction>> Extractions::create_transient(const ByteSour
           return {};
         };
         ExtractionTimings timings;
-        auto manifest =
-            compute_extraction(*held, summary, *volume->samples, *options, reconstruct_, write_part, running, timings);
+        auto manifest = compute_extraction(*held, {.volume = summary, .samples = *volume->samples}, *options,
+                                           reconstruct_, write_part, running, timings);
         if (!manifest) return std::move(manifest).error();
         held->complete(*std::move(manifest), timings);
         return {};
@@ -298,7 +353,11 @@ Result<void> Extractions::purge(const std::string& id) {
   const auto record = read_document(id, kRequest);
   if (!record) return record.error();
   if (auto done = remove_blobs(id); !done) return done;
-  return store_.remove(result_key(record->at("volume").get<std::string>(), id));
+  const Extraction::Identity identity{id, record->at("volume").get<std::string>(), "", record->at("request")};
+  for (const std::string& volume : volumes_of(identity)) {
+    if (auto done = store_.remove(result_key(volume, id)); !done) return done;
+  }
+  return {};
 }
 
 /// Removes what is stored of an extraction, whether or not it has a record. What computes it is stopped first, or it
@@ -333,10 +392,41 @@ Result<void> Extractions::purge_results_of(const std::string& volume) {
     if (auto done = remove_blobs(id); !done) return done;
     if (auto done = store_.remove(result_key(volume, id)); !done) return done;
   }
-  return {};
+  return fills_.remove(volume);
 }
 
 // ---- files
+
+Result<LevelFile> Extractions::bodies(const std::string& id) {
+  const auto extraction = find(id);
+  if (!extraction) return extraction.error();
+  const Extraction::Snapshot now = (*extraction)->snapshot();
+  if (!now.manifest) return not_done(id, now.state);
+  auto bytes = store_.get(key(id, kBodies));
+  if (!bytes && bytes.error().code == ErrorCode::not_found) {
+    if (auto made = make_bodies((*extraction)->identity()); !made) return std::move(made).error();
+    bytes = store_.get(key(id, kBodies));
+  }
+  if (!bytes) return std::move(bytes).error();
+  return bytes_file(*std::move(bytes));
+}
+
+bool Extractions::are_bodies_made(const std::string& id) {
+  const auto made = store_.exists(key(id, kBodies));
+  return made && *made;
+}
+
+Result<void> Extractions::make_bodies(const Extraction::Identity& identity) {
+  return run_and_wait([&](Job& running) -> Result<void> {
+    ExtractionTimings unread;
+    const auto opened = open(identity, running, unread);
+    if (!opened) return opened.error();
+    const ExtractionInput input = opened->input();
+    const auto bodies = describe_bodies(reconstruct_input(input, opened->options), opened->options, running);
+    if (!bodies) return bodies.error();
+    return write_document(key(identity.id, kBodies), bodies_document(input.volume, opened->options, *bodies));
+  });
+}
 
 Result<LevelFile> Extractions::part(const std::string& id, int level, int part) {
   const auto extraction = find(id);
@@ -347,9 +437,7 @@ Result<LevelFile> Extractions::part(const std::string& id, int level, int part) 
     return Error{ErrorCode::not_found,
                  "extraction " + id + ": no part " + std::to_string(part) + " of level " + std::to_string(level)};
   }
-  LevelFile file{.sha256 = sha256_hex(*bytes), .bytes = bytes->size(), .stream = nullptr, .transform = {}};
-  file.stream = bytes_stream(*std::move(bytes));
-  return file;
+  return bytes_file(*std::move(bytes));
 }
 
 bool Extractions::is_level_made(const std::string& id, int level, LevelFormat format) {
@@ -363,9 +451,7 @@ Result<LevelFile> Extractions::level(const std::string& id, int level, LevelForm
   const auto extraction = find(id);
   if (!extraction) return extraction.error();
   const Extraction::Snapshot now = (*extraction)->snapshot();
-  if (!now.manifest) {
-    return Error{ErrorCode::already_exists, "extraction " + id + ": it is " + name_of(now.state) + ", not done"};
-  }
+  if (!now.manifest) return not_done(id, now.state);
   const Json& levels = now.manifest->at("levels");
   if (level < 0 || level >= static_cast<int>(levels.size())) {
     return Error{ErrorCode::not_found, "extraction " + id + ": no level " + std::to_string(level) + "; it has " +
@@ -398,9 +484,8 @@ Result<LevelFile> Extractions::whole_level(const std::string& id, int level, Lev
                    .transform = {}};
 }
 
-/// On a worker, as all that computes; the caller waits. Two at once make the same file twice, which does no harm.
 Result<void> Extractions::make_level_file(const std::string& id, int level, LevelFormat format, const Json& manifest) {
-  auto job = queue_.submit(Priority::interactive, [&](Job& running) -> Result<void> {
+  return run_and_wait([&](Job& running) -> Result<void> {
     auto staged = store_.stage();
     if (!staged) return std::move(staged).error();
     auto description = export_level((*staged)->path(), manifest, level, format, part_reader(id), threads_, running);
@@ -409,6 +494,11 @@ Result<void> Extractions::make_level_file(const std::string& id, int level, Leve
     if (auto done = store_.commit(*std::move(staged), key(id, name)); !done) return done;
     return write_document(key(id, name + ".json"), *description);
   });
+}
+
+/// On a worker, as all that computes; the caller waits. Two at once make the same file twice, which does no harm.
+Result<void> Extractions::run_and_wait(const std::function<Result<void>(Job&)>& work) {
+  auto job = queue_.submit(Priority::interactive, work);
   if (!job) return std::move(job).error();
   while (!(*job)->wait_for(std::chrono::hours(1))) {
   }

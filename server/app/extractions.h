@@ -13,6 +13,7 @@
 #include "server/app/byte_stream.h"
 #include "server/app/compute.h"
 #include "server/app/extraction.h"
+#include "server/app/fills.h"
 #include "server/app/volumes.h"
 #include "server/jobs/job_queue.h"
 #include "server/store/blob_store.h"
@@ -34,7 +35,8 @@ struct LevelFile {
 ///
 /// Stored under <tenant>/extractions/<id>/: `request.json` (before anything is acknowledged),
 /// `parts/<level>.<part>.drc`, `levels/<level>.<format>` with a description beside it (whole files, made on first
-/// request), `cancelled.json`, and `manifest.json`, written last: an extraction is done when its manifest is there.
+/// request), `bodies.json` (made on first request), `cancelled.json`, and `manifest.json`, written last: an extraction is done when its
+/// manifest is there.
 /// <tenant>/volumes/<volume>/results/<id> tells what was derived from a volume.
 class Extractions {
  public:
@@ -62,7 +64,7 @@ class Extractions {
   static void abandon(Extraction& extraction);
   /// Removes a stored result.
   Result<void> purge(const std::string& id);
-  /// Removes all that was derived from a volume.
+  /// Removes all that was derived from a volume: results, and its filled samples.
   Result<void> purge_results_of(const std::string& volume);
 
   /// False when level() would have to make the file first.
@@ -71,6 +73,10 @@ class Extractions {
   Result<LevelFile> level(const std::string& id, int level, LevelFormat format);
   /// One encoded part; may be read as soon as its level is ready.
   Result<LevelFile> part(const std::string& id, int level, int part);
+  /// False when bodies() would have to describe them first.
+  bool are_bodies_made(const std::string& id);
+  /// The document of all bodies. errors: not_found; already_exists: the extraction is not done.
+  Result<LevelFile> bodies(const std::string& id);
 
  private:
   BlobKey key(const std::string& id, const std::string& name) const {
@@ -92,7 +98,24 @@ class Extractions {
   Result<void> record(const Extraction::Identity& identity);
   Result<void> remove_blobs(const std::string& id);
   Result<void> run(Extraction& extraction, Job& job);
+
+  /// Everything that the request of an extraction needs, held.
+  struct Opened {
+    ReconstructOptions options;
+    std::shared_ptr<const StoredVolume> volume;
+    std::shared_ptr<const FilledStoredVolume> filled;      ///< null when nothing is filled
+    std::shared_ptr<const StoredVolume> attribute_volume;  ///< null when the request names none
+
+    ExtractionInput input() const;
+  };
+  Result<Opened> open(const Extraction::Identity& identity, Progress& progress, ExtractionTimings& timings);
+  Result<std::shared_ptr<const StoredVolume>> open_attribute_volume(const ReconstructOptions& options,
+                                                                    const VolumeSummary& volume);
+  Result<std::shared_ptr<const FilledStoredVolume>> fill(std::shared_ptr<const StoredVolume> volume,
+                                                         const ReconstructOptions& options, Progress& progress);
   Result<LevelFile> whole_level(const std::string& id, int level, LevelFormat format, const Json& manifest);
+  Result<void> make_bodies(const Extraction::Identity& identity);
+  Result<void> run_and_wait(const std::function<Result<void>(Job&)>& work);
   Result<void> make_level_file(const std::string& id, int level, LevelFormat format, const Json& manifest);
 
   BlobStore& store_;
@@ -101,6 +124,7 @@ class Extractions {
   const std::string tenant_;
   const int threads_;
   const ReconstructFunction reconstruct_;
+  Fills fills_;
   std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Entry>> entries_;  ///< recently used, by id
 };

@@ -5,9 +5,13 @@
 
 #include "engine/codec/obj.h"
 #include "engine/codec/ply.h"
+#include "engine/pipeline/output_space.h"
+#include "server/documents/volume_document.h"
 
 namespace geosis::server {
 namespace {
+
+constexpr const char* kBodiesFile = "bodies.json";
 
 std::string part_name(std::size_t level, std::size_t part, std::size_t parts) {
   const std::string name = "lod" + std::to_string(level);
@@ -26,12 +30,22 @@ Result<void> write_parts(OutputFolder& folder, const EncodedLevel& encoded, std:
   return {};
 }
 
-Result<void> write_exports(OutputFolder& folder, const IndexedMesh& mesh, std::size_t level, FileFormats formats,
+Result<void> write_document(OutputFolder& folder, const char* name, const Json& document) {
+  const std::string text = document_text(document);
+  return folder.write(name, [&](std::ostream& stream) {
+    stream << text;
+    return Result<void>();
+  });
+}
+
+Result<void> write_exports(OutputFolder& folder, const ReconstructedLevel& made, std::size_t level, FileFormats formats,
                            const PositionMap& to_space) {
   const std::string name = "lod" + std::to_string(level);
+  const IndexedMesh& mesh = made.lod.mesh;
   if (formats.ply) {
-    auto written =
-        folder.write(name + ".ply", [&](std::ostream& stream) { return write_ply(stream, mesh, {}, to_space); });
+    auto written = folder.write(name + ".ply", [&](std::ostream& stream) { 
+      return write_ply(stream, mesh, made.attributes, to_space);
+    });
     if (!written) return written;
   }
   if (formats.obj) {
@@ -72,11 +86,12 @@ ManifestUrls file_urls() {
             if (parts != 1) return std::nullopt;
             return part_name(level, 0, parts);
           },
-          .part = part_name};
+          .part = part_name,
+          .bodies = kBodiesFile};
 }
 
 bool is_result_file(const std::string& name) {
-  if (name == "manifest.json") return true;
+  if (name == "manifest.json" || name == kBodiesFile) return true;
   const auto after_level = without_number(name, "lod");
   if (!after_level) return false;
   if (*after_level == ".drc" || *after_level == ".ply" || *after_level == ".obj") return true;
@@ -84,23 +99,23 @@ bool is_result_file(const std::string& name) {
 }
 
 Result<void> write_result(OutputFolder& folder, const VolumeDescription& volume, const ReconstructOptions& options,
-                          const Reconstruction& reconstruction, FileFormats formats, Progress& progress) {
-  const PositionMap to_space =
-      options.index_space ? PositionMap() : [&](Vec3d index) { return volume.geometry.map(index); };
-  const auto& levels = reconstruction.levels;
+                          const Results& results, FileFormats formats, Progress& progress) {
+  const auto space = output_space(volume.geometry, options);
+  if (!space) return space.error();
+  const PositionMap to_space = options.index_space ? PositionMap() : [&](Vec3d index) { return space->map(index); };
+  const auto& levels = results.reconstruction.levels;
   for (std::size_t level = 0; level < levels.size(); ++level) {
     if (progress.cancelled())
       return Error{ErrorCode::cancelled, "stopped while writing level " + std::to_string(level)};
     progress.report("write", static_cast<double>(level) / static_cast<double>(levels.size()));
     if (auto written = write_parts(folder, levels[level].encoded, level); !written) return written;
-    auto written = write_exports(folder, levels[level].lod.mesh, level, formats, to_space);
+    auto written = write_exports(folder, levels[level], level, formats, to_space);
     if (!written) return written;
   }
-  const std::string manifest = document_text(manifest_document(volume, options, reconstruction, file_urls()));
-  return folder.write("manifest.json", [&](std::ostream& stream) {
-    stream << manifest;
-    return Result<void>();
-  });
+  const VolumeSummary summary = summarize(volume);
+  auto written = write_document(folder, kBodiesFile, bodies_document(summary, options, results.bodies));
+  if (!written) return written;
+  return write_document(folder, "manifest.json", manifest_document(summary, options, results.reconstruction, file_urls()));
 }
 
 }  // namespace geosis::server

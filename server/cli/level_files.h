@@ -24,11 +24,17 @@ Result<FileFormats> parse_file_formats(std::string_view text);
 /// The folder's file names: lod0.drc, or lod0.0.drc, lod0.1.drc, ... when level 0 has several parts.
 ManifestUrls file_urls();
 
-/// True for names that this program gives to files of a result: manifest.json, lod0.drc, lod0.1.drc, lod4.ply, ...
+/// True for names that this program gives to files of a result: manifest.json, bodies.json, lod0.drc, lod0.1.drc, lod4.ply, ...
 bool is_result_file(const std::string& name);
 
-/// Writes all levels and then manifest.json.
+/// What a run has made.
+struct Results {
+  const Reconstruction& reconstruction;
+  const std::vector<DescribedBody>& bodies;
+};
+
+/// Writes all levels, bodies.json and then manifest.json.
 Result<void> write_result(OutputFolder& folder, const VolumeDescription& volume, const ReconstructOptions& options,
-                          const Reconstruction& reconstruction, FileFormats formats, Progress& progress);
+                          const Results& results, FileFormats formats, Progress& progress);
 
 }  // namespace geosis::server

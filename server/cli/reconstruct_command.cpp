@@ -1,33 +1,32 @@
-#include <array>
-#include <charconv>
 #include <chrono>
 #include <cstdio>
-#include <fstream>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "engine/base/parallel.h"
+#include "engine/pipeline/describe_bodies.h"
+#include "engine/pipeline/stages.h"
 #include "server/cli/commands.h"
 #include "server/cli/input.h"
 #include "server/cli/level_files.h"
 #include "server/cli/level_table.h"
 #include "server/cli/progress_bar.h"
+#include "server/cli/request_arguments.h"
+#include "server/documents/ids.h"
+#include "server/documents/manifest.h"
 #include "server/documents/request.h"
+#include "server/documents/request_check.h"
 
 namespace geosis::server {
 namespace {
 
 struct ReconstructArguments {
-  explicit ReconstructArguments(CLI::App& command) : input(command) {}
+  explicit ReconstructArguments(CLI::App& command) : input(command), request(command) {}
 
   InputArguments input;
-  std::pair<std::string, std::string> range;
-  std::string request_path;
-  std::string mode;
-  std::string region;
-  std::string space;
-  bool no_cap = false;
+  RequestArguments request;
   std::string out = "out";
   std::string formats = "drc";
   int threads = default_threads();
@@ -45,65 +44,8 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-Result<Json> read_request_file(const std::string& path) {
-  constexpr std::size_t kMostBytes = 1 << 20;
-  std::ifstream file(path, std::ios::binary);
-  if (!file) return Error{ErrorCode::not_found, path + ": cannot be read"};
-  std::string text(kMostBytes + 1, '\0');
-  file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  text.resize(static_cast<std::size_t>(file.gcount()));
-  if (file.bad()) return Error{ErrorCode::unavailable, path + ": reading failed"};
-  if (text.size() > kMostBytes) return Error{ErrorCode::limit_exceeded, path + ": a request has at most 1 MiB"};
-  auto document = parse_json(text);
-  if (!document) return Error{document.error().code, path + ": " + document.error().message};
-  return document;
-}
-
-/// "0:75,0:180,0:267" as the request's `region`.
-Result<Json> region_from_text(const std::string& text) {
-  const Error problem{ErrorCode::invalid_argument, "--region " + text + ": expected I0:I1,J0:J1,K0:K1"};
-  std::array<int, 6> ends{};
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  for (std::size_t n = 0; n < ends.size(); ++n) {
-    const auto parsed = std::from_chars(at, end, ends[n]);
-    if (parsed.ec != std::errc{}) return problem;
-    at = parsed.ptr;
-    if (n == 5) break;
-    if (at == end || *at != (n % 2 == 0 ? ':' : ',')) return problem;
-    ++at;
-  }
-  if (at != end) return problem;
-  return Json{{"inline", {ends[0], ends[1]}}, {"crossline", {ends[2], ends[3]}}, {"sample", {ends[4], ends[5]}}};
-}
-
-/// The request file's document with the flags written over it: both are checked in the same place, parse_request.
-Result<Json> requested_document(const ReconstructArguments& arguments) {
-  Json document = Json::object();
-  if (!arguments.request_path.empty()) {
-    auto file = read_request_file(arguments.request_path);
-    if (!file) return file;
-    document = *std::move(file);
-    if (!document.is_object()) return document;
-  }
-  if (!arguments.range.first.empty()) {
-    auto range = range_from_text(arguments.range.first, arguments.range.second);
-    if (!range) return range;
-    document["range"] = *std::move(range);
-  }
-  if (!arguments.region.empty()) {
-    auto region = region_from_text(arguments.region);
-    if (!region) return region;
-    document["region"] = *std::move(region);
-  }
-  if (!arguments.mode.empty()) document["mode"] = arguments.mode;
-  if (!arguments.space.empty()) document["space"] = arguments.space;
-  if (arguments.no_cap) document["cap"] = false;
-  return document;
-}
-
 Result<ReconstructOptions> requested_options(const ReconstructArguments& arguments) {
-  const auto document = requested_document(arguments);
+  const auto document = arguments.request.document();
   if (!document) return document.error();
   auto options = parse_request(*document);
   if (options) options->threads = arguments.threads;
@@ -120,9 +62,29 @@ void print_volume(const VolumeDescription& volume) {
     std::printf("warning: %s: %s\n", warning.code.c_str(), warning.detail.c_str());
 }
 
+/// The volume that the attribute `value` is of, whose id takes the place of its file's name.
+Result<std::optional<ImportedVolume>> import_attribute_volume(const ReconstructArguments& arguments,
+                                                              const VolumeSummary& volume, ReconstructOptions& options,
+                                                              Progress& progress) {
+  if (!options.attribute_volume) return std::optional<ImportedVolume>();
+  const std::string& path = arguments.request.attribute_volume();
+  if (path.empty()) {
+    return Error{ErrorCode::invalid_argument, "request /attribute_volume: give the volume's file, --attribute-volume"};
+  }
+  auto source = open_file(path);
+  if (!source) return std::move(source).error();
+  auto imported = import_volume(**source, {}, std::nullopt, progress);
+  if (!imported) return Error{imported.error().code, path + ": " + imported.error().message};
+  if (auto fits = check_attribute_volume(summarize(imported->description), volume); !fits) {
+    return std::move(fits).error();
+  }
+  options.attribute_volume = volume_id(imported->description);
+  return std::optional(*std::move(imported));
+}
+
 Result<void> run_reconstruct(const ReconstructArguments& arguments) {
-  const auto options = requested_options(arguments);
-  if (!options) return options.error();
+  auto options = requested_options(arguments);
+  if (!options) return std::move(options).error();
   const auto formats = parse_file_formats(arguments.formats);
   if (!formats) return formats.error();
   auto folder = OutputFolder::open(arguments.out);
@@ -133,12 +95,27 @@ Result<void> run_reconstruct(const ReconstructArguments& arguments) {
   Stopwatch watch;
   const auto volume = arguments.input.import(progress);
   if (!volume) return volume.error();
+  const VolumeSummary summary = summarize(volume->description);
+  if (auto checked = check_request(*options, summary); !checked) return checked;
+  const auto other = import_attribute_volume(arguments, summary, *options, progress);
+  if (!other) return other.error();
   const double import_seconds = watch.lap();
   StageTimings timings;
-  const auto reconstruction = reconstruct(*volume->samples, volume->description.geometry, *options, progress, &timings);
+  ReconstructInput input{.samples = *volume->samples,
+                               .geometry = volume->description.geometry,
+                               .has_lengths = has_lengths(summary, *options),
+                               .attribute_volume = *other ? (*other)->samples.get() : nullptr};
+  const auto filled = fill_stage(input, *options, progress);  // once for both that follow
+  if (!filled) return filled.error();
+  input.filled = filled->filled;
+  const double fill_seconds = watch.lap();
+  const auto reconstruction = reconstruct(input, *options, progress, &timings);
   if (!reconstruction) return reconstruction.error();
   watch.lap();
-  auto written = write_result(*folder, volume->description, *options, *reconstruction, *formats, progress);
+  const auto bodies = describe_bodies(input, *options, progress);
+  if (!bodies) return bodies.error();
+  const double bodies_seconds = watch.lap();
+  auto written = write_result(*folder, volume->description, *options, {*reconstruction, *bodies}, *formats, progress);
   if (written) written = folder->commit(is_result_file);
   if (!written) return written;
   const double write_seconds = watch.lap();
@@ -146,9 +123,12 @@ Result<void> run_reconstruct(const ReconstructArguments& arguments) {
   progress.clear();
   print_volume(volume->description);
   std::fputs(level_table(*reconstruction).c_str(), stdout);
-  std::printf("seconds: import %.2f, extract %.2f, simplify %.2f, encode %.2f, certify %.2f, write %.2f, total %.2f\n",
-              import_seconds, timings.extract, timings.simplify, timings.encode, timings.certify, write_seconds,
-              total.lap());
+  std::fputs(body_table(*bodies).c_str(), stdout);
+  std::printf(
+      "seconds: import %.2f, fill %.2f, extract %.2f, simplify %.2f, encode %.2f, certify %.2f, "
+      "bodies %.2f, write %.2f, total %.2f\n",
+      import_seconds, fill_seconds, timings.extract, timings.simplify, timings.encode, timings.certify, bodies_seconds,
+      write_seconds, total.lap());
   return {};
 }
 
@@ -157,16 +137,6 @@ Result<void> run_reconstruct(const ReconstructArguments& arguments) {
 Command add_reconstruct_command(CLI::App& app) {
   auto& command = *app.add_subcommand("reconstruct", "Surface of the body in an amplitude range, in levels of detail");
   auto arguments = std::make_shared<ReconstructArguments>(command);
-  // Two values always: an end may look like a flag (-inf).
-  command.add_option("--range", arguments->range, "the body is {LOW <= amplitude <= HIGH}; -inf and inf are open ends")
-      ->type_name("LOW HIGH");
-  command.add_option("--request", arguments->request_path, "request as JSON; flags win over it")->type_name("FILE");
-  command.add_option("--mode", arguments->mode, "exact (default) or sampled: g = (f - LOW)(HIGH - f) on the samples")
-      ->type_name("MODE");
-  command.add_flag("--no-cap", arguments->no_cap, "leave the body open where it leaves the survey");
-  command.add_option("--region", arguments->region, "nodes to look at, from 0, ends included")
-      ->type_name("I0:I1,J0:J1,K0:K1");
-  command.add_option("--space", arguments->space, "world (default) or index")->type_name("SPACE");
   command.add_option("--out", arguments->out, "folder for manifest.json and the levels")->capture_default_str();
   command.add_option("--formats", arguments->formats, "files of each level: drc (always written), ply, obj")
       ->capture_default_str();

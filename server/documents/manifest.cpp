@@ -1,6 +1,7 @@
 #include "server/documents/manifest.h"
 
 #include "engine/base/digest.h"
+#include "engine/pipeline/output_space.h"
 #include "server/documents/ids.h"
 #include "server/documents/request.h"
 
@@ -9,12 +10,7 @@ namespace {
 
 /// Index positions to the requested space, row-major.
 std::array<double, 16> output_transform(const VolumeSummary& volume, const ReconstructOptions& options) {
-  return options.index_space ? *AffineGeometry().affine() : *volume.geometry.affine();
-}
-
-/// Two axes in metres and one in milliseconds make no area: measures in such a space have no meaning.
-bool has_measures(const VolumeSummary& volume, const ReconstructOptions& options) {
-  return options.index_space || volume.sample_unit != "ms";
+  return *output_space(volume.geometry, options)->affine();  // the geometry is affine: this cannot fail
 }
 
 Json stopped_by_document(StoppedBy reason) {
@@ -46,20 +42,45 @@ std::size_t bytes_of(const EncodedLevel& encoded) {
   return bytes;
 }
 
-/// The distance is measured in voxels; it is a length of the requested space when that is the index space.
-Json distance_document(const SurfaceDistance& distance, bool index_space) {
-  const Json mean = number_or_null(distance.mean_voxels);
-  const Json max = number_or_null(distance.max_voxels);
-  return {{"mean_voxels", mean},
-          {"max_voxels", max},
-          {"mean", index_space ? mean : Json(nullptr)},
-          {"max", index_space ? max : Json(nullptr)},
-          {"samples", distance.samples}};
+Json distance_document(const ReconstructedLevel& level) {
+  const auto& in_space = level.space_distance;
+  return {{"mean_voxels", number_or_null(level.distance.mean_voxels)},
+          {"max_voxels", number_or_null(level.distance.max_voxels)},
+          {"mean", in_space ? number_or_null(in_space->mean) : Json(nullptr)},
+          {"max", in_space ? number_or_null(in_space->max) : Json(nullptr)},
+          {"samples", level.distance.samples}};
+}
+
+Json point_document(Vec3d point) {
+  return {number_or_null(point.x), number_or_null(point.y), number_or_null(point.z)};
+}
+
+Json amplitude_document(const std::optional<BodySamples::Amplitude>& amplitude) {
+  if (!amplitude) return nullptr;
+  return {{"mean", number_or_null(amplitude->mean)},
+          {"min", number_or_null(amplitude->min)},
+          {"max", number_or_null(amplitude->max)}};
+}
+
+Json body_document(const DescribedBody& body, std::size_t number, bool measured) {
+  const BodyReport& surface = body.surface;
+  return {{"body", number},
+          {"voxels", body.samples.voxels},
+          {"volume", measured ? number_or_null(surface.volume) : Json(nullptr)},
+          {"area", measured ? number_or_null(surface.area) : Json(nullptr)},
+          {"bbox", {point_document(surface.low), point_document(surface.high)}},
+          {"centroid", point_document(surface.centroid)},
+          {"genus", surface.genus},
+          {"cavities", surface.cavities},
+          {"components", surface.components},
+          {"amplitude", amplitude_document(body.samples.amplitude)},
+          {"interpolated_share", number_or_null(surface.interpolated_share)},
+          {"volume_voxels", number_or_null(surface.volume_voxels)}};
 }
 
 Json level_document(const ReconstructedLevel& level, std::size_t number, const VolumeSummary& volume,
                     const ReconstructOptions& options, const ManifestUrls& urls) {
-  const bool measured = has_measures(volume, options);
+  const bool measured = has_lengths(volume, options);
   const auto& topology = level.topology;
   const auto url = urls.level(number, level.encoded.parts.size());
   return {{"level", number},
@@ -77,15 +98,19 @@ Json level_document(const ReconstructedLevel& level, std::size_t number, const V
           {"manifold", topology.manifold},
           {"area", measured ? number_or_null(level.measures.area) : Json(nullptr)},
           {"volume", measured ? number_or_null(level.measures.volume) : Json(nullptr)},
-          {"distance", distance_document(level.distance, options.index_space)},
+          {"distance", distance_document(level)},
           {"cost", number_or_null(level.lod.cost)},
           {"volume_drift", number_or_null(level.volume_drift)},
-          {"interpolated_share", 0},  // nothing is filled in, so nothing was interpolated
+          {"interpolated_share", number_or_null(level.interpolated_share)},
           {"dropped_components", 0},
           {"preview", false}};
 }
 
 }  // namespace
+
+bool has_lengths(const VolumeSummary& volume, const ReconstructOptions& options) {
+  return options.index_space || volume.sample_unit != "ms" || options.velocity.has_value();
+}
 
 Json manifest_document(const VolumeSummary& volume, const ReconstructOptions& options,
                        const Reconstruction& reconstruction, const ManifestUrls& urls) {
@@ -103,12 +128,19 @@ Json manifest_document(const VolumeSummary& volume, const ReconstructOptions& op
           {"origin", {transform[3], transform[7], transform[11]}},
           {"levels", levels},
           {"empty", reconstruction.levels.empty()},
-          {"bodies_url", nullptr}};
+          {"bodies_url", urls.bodies}};
 }
 
 Json manifest_document(const VolumeDescription& volume, const ReconstructOptions& options,
                        const Reconstruction& reconstruction, const ManifestUrls& urls) {
   return manifest_document(summarize(volume), options, reconstruction, urls);
+}
+
+Json bodies_document(const VolumeSummary& volume, const ReconstructOptions& options,
+                     const std::vector<DescribedBody>& bodies) {
+  Json list = Json::array();
+  for (const auto& body : bodies) list.push_back(body_document(body, list.size(), has_lengths(volume, options)));
+  return {{"bodies", std::move(list)}};
 }
 
 Json early_level_document(const ReconstructedLevel& level, std::size_t number, const VolumeSummary& volume,

@@ -8,12 +8,14 @@
 #include <utility>
 
 #include "server/documents/object_reader.h"
+#include "server/documents/request_sections.h"
 
 namespace geosis::server {
 namespace {
 
 constexpr std::int64_t kMostLevels = 16;
 constexpr std::int64_t kLastNode = std::numeric_limits<std::int32_t>::max() - 1;
+constexpr double kFastest = 20'000;  // m/s, beyond any rock
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr const char* kAxisNames[3] = {"inline", "crossline", "sample"};
 
@@ -25,13 +27,8 @@ struct FixedField {
 
 const std::vector<FixedField>& fixed_fields() {
   static const std::vector<FixedField> fields = {
-      {"missing", {{"method", "none"}, {"kernel", "polyharmonic"}, {"steer", "auto"}, {"max_distance", nullptr}}},
       {"grid", "given"},
-      {"velocity", nullptr},
-      {"bodies", {{"min_voxels", 0}, {"largest", nullptr}, {"seeds", Json::array()}}},
       {"simplify", {{"strategy", "greedy"}, {"placement", "optimal"}, {"seed", 0}}},
-      {"attributes", Json::array({"reliability"})},
-      {"attribute_volume", nullptr},
       {"preview", false},
   };
   return fields;
@@ -112,6 +109,16 @@ double read_ratio(ObjectReader& level, double previous) {
   return number;
 }
 
+/// Two-way travel times become depths with it.
+std::optional<double> read_velocity(ObjectReader& request) {
+  const Json* value = request.find("velocity");
+  if (!value || value->is_null()) return std::nullopt;
+  const double velocity = value->is_number() ? value->get<double>() : 0;
+  if (velocity > 0 && velocity <= kFastest) return velocity;
+  request.refuse(request.pointer_to("velocity"), *value, "metres a second, above 0 and at most 20000, or null");
+  return std::nullopt;
+}
+
 /// Levels by another measure than the ratio are in the contract, but not in this version.
 void refuse_other_measures(ObjectReader& level) {
   for (const char* measure : {"max_error", "max_cost"}) level.only(measure, nullptr);
@@ -185,8 +192,12 @@ Result<ReconstructOptions> parse_request(const Json& document) {
   options.mode = request.choice("mode", {"exact", "sampled"}) == 0 ? BodyMode::exact : BodyMode::sampled;
   options.index_space = request.choice("space", {"world", "index"}) == 1;
   options.cap = request.boolean("cap", options.cap);
+  options.fill = read_missing(request, problem);
   options.region = read_region(request, problem);
+  options.bodies = read_bodies(request, problem);
   options.ratios = read_levels(request, options.ratios, problem);
+  options.velocity = read_velocity(request);
+  read_attributes(request, options);
   read_codec(request, options, problem);
   for (const auto& field : fixed_fields()) read_fixed(request, field, problem);
   request.refuse_unknown();
@@ -198,10 +209,15 @@ Json request_document(const ReconstructOptions& options, GridShape shape) {
   Json request = {
       {"range", {range_end_or_null(options.range.low), range_end_or_null(options.range.high)}},
       {"mode", options.mode == BodyMode::exact ? "exact" : "sampled"},
+      {"missing", missing_document(options.fill)},
       {"space", options.index_space ? "index" : "world"},
+      {"velocity", options.index_space ? Json(nullptr) : or_null(options.velocity)},  // index space has no times
       {"cap", options.cap},
       {"region", region_document(options.region.value_or(whole(shape)))},
+      {"bodies", bodies_document(options.bodies)},
       {"levels", levels_document(options.ratios)},
+      {"attributes", attributes_document(options.attributes)},
+      {"attribute_volume", or_null(options.attribute_volume)},
       {"codec",
        {{"position_bits", or_null(options.position_bits)}, {"normals", false}, {"speed", or_null(options.speed)}}}};
   for (const auto& field : fixed_fields()) request[field.name] = field.supported;

@@ -104,6 +104,10 @@ Reply manifest(Services services, const Request& request) {
   return reply;
 }
 
+Reply too_many_wait() {
+  return error_reply({ErrorCode::unavailable, "too many requests wait for results"});
+}
+
 Reply file_reply(Result<LevelFile> file, const char* type, const std::string& transform) {
   if (!file) return error_reply(file.error());
   Reply reply;
@@ -112,6 +116,18 @@ Reply file_reply(Result<LevelFile> file, const char* type, const std::string& tr
   reply.stream = std::move(file->stream);
   reply.length = file->bytes;
   return reply;
+}
+
+/// 404 and 409 as the manifest has them.
+Reply bodies(Services services, const Request& request) {
+  const auto extraction = services.extractions.find(request.captures[0]);
+  if (!extraction) return error_reply(extraction.error());
+  if (!(*extraction)->snapshot().manifest) return not_done(**extraction);
+  std::optional<WaitingRoom::Seat> seat;
+  if (!services.extractions.are_bodies_made(request.captures[0])) {
+    if (seat = services.waiting.take(); !seat) return too_many_wait();
+  }
+  return file_reply(services.extractions.bodies(request.captures[0]), "application/json", "");
 }
 
 int small_number(const std::string& digits) {
@@ -130,9 +146,7 @@ Reply level(Services services, const Request& request) {
   const int number = small_number(request.captures[1]);
   std::optional<WaitingRoom::Seat> seat;
   if (!services.extractions.is_level_made(id, number, wanted)) {
-    if (seat = services.waiting.take(); !seat) {
-      return error_reply({ErrorCode::unavailable, "too many requests wait for results"});
-    }
+    if (seat = services.waiting.take(); !seat) return too_many_wait();
   }
   auto file = services.extractions.level(id, number, wanted);
   const std::string transform = file ? file->transform : "";
@@ -169,6 +183,7 @@ Result<Json> one_shot_request(const Request& request) {
   for (const char* name : {"mode", "space"}) {
     if (const auto value = parameter(request, name)) wanted[name] = *value;
   }
+  if (const auto method = parameter(request, "missing")) wanted["missing"] = {{"method", *method}};
   const auto cap = flag_parameter(request, "cap", true);
   if (!cap) return cap.error();
   wanted["cap"] = *cap;
@@ -178,7 +193,7 @@ Result<Json> one_shot_request(const Request& request) {
 Reply extract(Services services, const Request& request, BodyReader& body) {
   const auto wanted = one_shot_request(request);
   if (!wanted) return error_reply(wanted.error());
-  auto options = upload_options(request.query, {"range", "mode", "space", "cap"});
+  auto options = upload_options(request.query, {"range", "mode", "space", "cap", "missing"});
   if (!options) return error_reply(options.error());
   const auto received = receive_file(request, body, services.store);
   if (!received) return error_reply(received.error());
@@ -206,6 +221,7 @@ void add_extraction_routes(Router& router, Services services) {
   router.get("/v1/extractions/([^/]+)/events", with(events));
   router.get("/v1/extractions/([^/]+)/stream", with(stream));
   router.get("/v1/extractions/([^/]+)/manifest", with(manifest));
+  router.get("/v1/extractions/([^/]+)/bodies", with(bodies));
   router.get("/v1/extractions/([^/]+)/lods/([0-9]+)\\.(drc|ply|obj)", with(level));
   router.get("/v1/extractions/([^/]+)/lods/([0-9]+)/parts/([0-9]+)\\.drc", with(part));
 }

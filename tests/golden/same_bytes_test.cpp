@@ -24,7 +24,7 @@ namespace geosis {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr int kGoldenResultVersion = 1;
+constexpr int kGoldenResultVersion = 2;
 
 template <class T>
 void add(Sha256& digest, const T& value) {
@@ -47,7 +47,7 @@ void add_certificate(Sha256& digest, const ReconstructedLevel& level) {
 /// Hash of all parts and certificates of all levels.
 std::string reconstruct_and_hash(const BrickedVolume& volume, const ReconstructOptions& options) {
   NoProgress progress;
-  const auto result = reconstruct(volume, AffineGeometry(), options, progress);
+  const auto result = reconstruct({volume, AffineGeometry()}, options, progress);
   EXPECT_TRUE(result) << result.error().message;
   Sha256 digest;
   for (const ReconstructedLevel& level : result->levels) {

@@ -57,7 +57,7 @@ void BM_Reconstruct(benchmark::State& state) {
   std::size_t triangles = 0;
   NoProgress progress;
   for (auto _ : state) {
-    const auto result = reconstruct(survey(), AffineGeometry(), options, progress);
+    const auto result = reconstruct({survey(), AffineGeometry()}, options, progress);
     triangles = result->levels.front().lod.mesh.triangles.size();
   }
   count(state, triangles);

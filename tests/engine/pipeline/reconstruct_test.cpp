@@ -35,14 +35,14 @@ const ReconstructOptions kBall = {.range = {0, kInfinity}, .ratios = {1, 0.25, 0
 
 Reconstruction reconstruct_ball(const ReconstructOptions& options, const GridGeometry& geometry = AffineGeometry()) {
   NoProgress progress;
-  auto result = reconstruct(*ball(), geometry, options, progress);
+  auto result = reconstruct({*ball(), geometry}, options, progress);
   EXPECT_TRUE(result) << result.error().message;
   return result ? *std::move(result) : Reconstruction{};
 }
 
 Error error_of(const ReconstructOptions& options, const GridGeometry& geometry = AffineGeometry()) {
   NoProgress progress;
-  const auto result = reconstruct(*ball(), geometry, options, progress);
+  const auto result = reconstruct({*ball(), geometry}, options, progress);
   EXPECT_FALSE(result);
   return result ? Error{} : result.error();
 }
@@ -146,7 +146,7 @@ TEST(Reconstruct, TellsOfEachLevelCoarsestFirst) {
   NoProgress progress;
   std::vector<std::size_t> told;
   StageTimings timings;
-  const auto result = reconstruct(*ball(), AffineGeometry(), kBall, progress, &timings,
+  const auto result = reconstruct({*ball(), AffineGeometry()}, kBall, progress, &timings,
                                   [&](std::size_t level, const ReconstructedLevel& made) {
                                     told.push_back(level);
                                     EXPECT_GT(triangles_of(made.encoded), 0);
@@ -212,7 +212,7 @@ class CancelAt final : public Progress {
 TEST(Reconstruct, StopsAtEveryStage) {
   for (const std::string_view stage : {"extract", "simplify", "encode", "certify"}) {
     CancelAt progress(stage);
-    const auto result = reconstruct(*ball(), AffineGeometry(), kBall, progress);
+    const auto result = reconstruct({*ball(), AffineGeometry()}, kBall, progress);
     ASSERT_FALSE(result) << stage;
     EXPECT_EQ(result.error().code, ErrorCode::cancelled) << stage;
   }

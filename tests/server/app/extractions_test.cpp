@@ -35,13 +35,13 @@ class Gate {
 
 /// reconstruct() that stops at the gate once level `level` is encoded, before the finer ones are.
 ReconstructFunction gated_after(int level, Gate& gate) {
-  return [level, &gate](const BrickedVolume& volume, const GridGeometry& geometry, const ReconstructOptions& options,
-                        Progress& progress, StageTimings* timings, const LevelSink& sink) {
+  return [level, &gate](const ReconstructInput& input, const ReconstructOptions& options, Progress& progress,
+                        StageTimings* timings, const LevelSink& sink) {
     const LevelSink gated = [&](std::size_t number, const ReconstructedLevel& done) {
       sink(number, done);
       if (static_cast<int>(number) == level) gate.wait(progress);
     };
-    return reconstruct(volume, geometry, options, progress, timings, gated);
+    return reconstruct(input, options, progress, timings, gated);
   };
 }
 

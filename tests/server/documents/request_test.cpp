@@ -122,18 +122,12 @@ TEST(ParseRequest, RefusesRegionsThatAreNoBox) {
 
 TEST(ParseRequest, NamesWhatThisVersionDoesNotSupport) {
   const auto unsupported = ErrorCode::unsupported;
-  expect_refused(R"({"range": [0, 1], "missing": {"method": "rbf"}})", unsupported,
-                 "request /missing/method: \"rbf\"; this version supports only \"none\"");
   expect_refused(R"({"range": [0, 1], "grid": "structural"})", unsupported,
                  "request /grid: \"structural\"; this version supports only \"given\"");
   expect_refused(R"({"range": [0, 1], "codec": {"normals": true}})", unsupported,
                  "request /codec/normals: true; this version supports only false");
   expect_refused(R"({"range": [0, 1], "levels": [{"max_error": 2}]})", unsupported,
                  "request /levels/0/max_error: 2; this version supports only null");
-  expect_refused(R"({"range": [0, 1], "bodies": {"min_voxels": 9}})", unsupported,
-                 "request /bodies/min_voxels: 9; this version supports only 0");
-  expect_refused(R"({"range": [0, 1], "attributes": ["body"]})", unsupported,
-                 "request /attributes: [\"body\"]; this version supports only [\"reliability\"]");
 }
 
 TEST(ParseRequest, ShortensLongValuesInMessages) {

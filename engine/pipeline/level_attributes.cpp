@@ -1,0 +1,46 @@
+#include "engine/pipeline/level_attributes.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "engine/missing/reliability_at.h"
+#include "engine/volume/sample_at.h"
+
+namespace geosis {
+namespace {
+
+std::vector<std::uint32_t> bodies_of(const LodLevel& level, std::span<const std::uint32_t> body_of_m0) {
+  if (body_of_m0.empty() || level.origin.empty()) return {body_of_m0.begin(), body_of_m0.end()};
+  std::vector<std::uint32_t> bodies;
+  bodies.reserve(level.origin.size());
+  for (const std::int32_t vertex : level.origin) bodies.push_back(body_of_m0[static_cast<std::size_t>(vertex)]);
+  return bodies;
+}
+
+}  // namespace
+
+Result<VertexAttributes> attributes_of(const LodLevel& level, const AttributeSources& sources,
+                                       const Progress& progress) {
+  VertexAttributes attributes;
+  attributes.body = bodies_of(level, sources.body);
+  if (sources.filled != nullptr) {
+    auto reliability = reliability_at(*sources.filled, level.mesh.positions, sources.threads, progress);
+    if (!reliability) return std::move(reliability).error();
+    attributes.reliability = *std::move(reliability);
+  }
+  if (sources.value != nullptr) {
+    auto values = sample_at(*sources.value, level.mesh.positions, sources.threads, progress);
+    if (!values) return std::move(values).error();
+    attributes.value = *std::move(values);
+  }
+  return attributes;
+}
+
+double interpolated_share(std::span<const std::uint8_t> reliability) {
+  if (reliability.empty()) return 0;
+  const auto interpolated = std::count_if(reliability.begin(), reliability.end(), [](std::uint8_t r) { return r < 255; });
+  return static_cast<double>(interpolated) / static_cast<double>(reliability.size());
+}
+
+}  // namespace geosis

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "engine/base/progress.h"
+#include "engine/base/result.h"
+#include "engine/mesh/lod_hierarchy.h"
+#include "engine/mesh/vertex_attributes.h"
+#include "engine/missing/filled_volume.h"
+#include "engine/volume/bricks.h"
+
+namespace geosis {
+
+/// Where the vertices of every level take their values from. What is null or empty gives no values.
+struct AttributeSources {
+  const FilledVolume* filled = nullptr;    ///< reliability
+  std::span<const std::uint32_t> body;     ///< of each vertex of M0
+  const BrickedVolume* value = nullptr;    ///< any volume of the shape of the one that M0 was extracted from
+  int threads = 1;
+};
+
+/// Values of a level's vertices: reliability and value at their positions, the body of the vertex of M0 that they
+/// descend from.
+///
+/// errors   malformed_input: a damaged brick.  cancelled.
+Result<VertexAttributes> attributes_of(const LodLevel& level, const AttributeSources& sources,
+                                       const Progress& progress);
+
+/// Share of the vertices whose reliability says that not only measured samples count there; 0 without reliabilities.
+double interpolated_share(std::span<const std::uint8_t> reliability);
+
+}  // namespace geosis

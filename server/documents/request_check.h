@@ -1,0 +1,18 @@
+#pragma once
+
+#include "engine/base/result.h"
+#include "engine/pipeline/reconstruct.h"
+#include "server/documents/volume_document.h"
+
+namespace geosis::server {
+
+/// Whether a request makes sense for this volume: what cannot be computed is refused before anything is recorded.
+///
+/// errors   invalid_argument, starting with the field's pointer: a region or seed outside the volume, a velocity for a
+///          survey that is not in time.
+Result<void> check_request(const ReconstructOptions& options, const VolumeSummary& volume);
+
+/// The same for the volume that the attribute "value" is of: it must have as many nodes along each axis.
+Result<void> check_attribute_volume(const VolumeSummary& attribute_volume, const VolumeSummary& volume);
+
+}  // namespace geosis::server

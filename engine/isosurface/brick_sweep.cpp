@@ -58,6 +58,7 @@ std::vector<std::size_t> bricks_with(Content content, const BrickedVolume& volum
   }
   std::sort(found.begin(), found.end());
   std::vector<std::size_t> bricks;
+  bricks.reserve(found.size());
   for (const auto& [code, brick] : found) bricks.push_back(brick);
   return bricks;
 }

@@ -202,6 +202,7 @@ LabelledSurface label_surface(const Sweep& sweep, const JoinedBodies& joined, co
                               const LabelOptions& labels) {
   const std::vector<BodyTotals> totals = add_up(sweep, joined);
   std::vector<double> sizes;
+  sizes.reserve(totals.size());
   for (const BodyTotals& body : totals) sizes.push_back(size_of(body, options.cap));
   LabelledSurface surface;
   std::vector<std::uint32_t> number(totals.size());

@@ -42,7 +42,7 @@ class NodeRuns {
     std::int32_t first_run = 0;
     std::int32_t first_contact = 0;  ///< place in contact_element_
   };
-  static std::size_t at(int a, int b) { return static_cast<std::size_t>(a * kBrickSamples + b); }
+  static std::size_t at(int a, int b) { return static_cast<std::size_t>(a) * kBrickSamples + b; }
   const Row& row(int a, int b) const { return rows_[at(a, b)]; }
   static std::uint64_t up_to(int c) { return ~std::uint64_t{0} >> (63 - c); }
   static std::int32_t run(const Row& row, int c) { return row.first_run + std::popcount(row.starts & up_to(c)) - 1; }

@@ -1,15 +1,20 @@
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include <gtest/gtest.h>
 
+#include "engine/analysis/body_report.h"
 #include "engine/base/progress.h"
+#include "engine/isosurface/labelled_surface.h"
 #include "engine/volume/formats/byte_source.h"
 #include "engine/volume/formats/import.h"
 #include "tests/property/surface_laws.h"
 #include "tests/support/body_oracle.h"
 #include "tests/support/shared_data.h"
+#include "tests/support/solid_oracle.h"
 
 // Bodies of real surveys against the oracle.
 
@@ -68,6 +73,39 @@ TEST(ExtractBodyOfASurvey, BrightTopsOfTheBuildUp) {
 
 TEST(ExtractBodyOfASurvey, ShellAroundTheBuildUp) {
   expect_body_of_survey("seismic/petrel_buildup_3d.sgy", {0.3f, 0.6f});
+}
+
+// Each body has one outer surface; they are those of the oracle, by their samples.
+void expect_bodies_of_survey(const char* name, IsoRange range) {
+  const std::filesystem::path path = shared_file(name);
+  if (!std::filesystem::exists(path)) GTEST_SKIP() << path << " is not here";
+  const auto volume = imported(path);
+  ASSERT_NE(volume, nullptr);
+  NoProgress progress;
+  const auto surface = extract_labelled_body(*volume, range, {.region = whole(volume->shape())}, {}, progress);
+  ASSERT_TRUE(surface);
+  const SolidOracle solid(samples_of(*volume), range, BodyMode::exact);
+  ASSERT_TRUE(solid.decided());
+  std::vector<std::int64_t> found, expected = solid.voxels();
+  for (const BodySamples& body : surface->samples) found.push_back(body.voxels);
+  std::sort(found.begin(), found.end());
+  std::sort(expected.begin(), expected.end());
+  EXPECT_EQ(found, expected);
+  const auto reports = report_bodies(surface->mesh, surface->body, surface->samples.size(), AffineGeometry());
+  ASSERT_TRUE(reports);
+  for (std::size_t body = 0; body < reports->size(); ++body) {
+    EXPECT_EQ((*reports)[body].components - (*reports)[body].cavities, 1) << body;
+    EXPECT_EQ((*reports)[body].volume_voxels, surface->volume_voxels[body]);
+  }
+}
+
+TEST(ExtractBodyOfASurvey, BodiesOfTheBuildUp) {
+  expect_bodies_of_survey("seismic/petrel_buildup_3d.sgy", {0.5f, kInf});
+}
+
+TEST(ExtractBodyOfASurvey, BodiesOfASurveyWithDeadTraces) {
+  expect_bodies_of_survey("seismic/f3_crop_missing_traces.sgy", {3500, kInf});
+  expect_bodies_of_survey("seismic/f3_crop_missing_traces.sgy", {-2000, 1500});
 }
 
 TEST(ExtractBodyOfASurvey, SurveyWithDeadTraces) {

@@ -11,8 +11,16 @@ namespace {
 
 CellTopology topology_of(const ScalarField& field, const BodySides& sides, GridIndex cell) {
   CellCorners corners;
-  for (int c = 0; c < 8; ++c) corners[c] = sides.corner(field.at(cell + unit_corner(c)));
-  return cell_topology(corners);
+  bool uniform = true;
+  for (int c = 0; c < 8; ++c) {
+    corners[c] = sides.corner(field.at(cell + unit_corner(c)));
+    uniform = uniform && corners[c].side == corners[0].side;
+  }
+  if (!uniform) return cell_topology(corners);
+  CellTopology topology;
+  topology.bands = corners[0].side == Side::inside ? 1 : 0;
+  topology.band_of_edge.fill(static_cast<std::int8_t>(topology.bands - 1));
+  return topology;
 }
 
 bool faces_decided(const ScalarField& field, const BodySides& sides, GridIndex cell) {

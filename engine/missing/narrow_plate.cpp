@@ -20,7 +20,8 @@ NarrowPlate::NarrowPlate(GapBox& gap, const PlateGaps& gaps, Vec3d weights, cons
       gaps_(gaps),
       options_(options),
       progress_(progress),
-      rows_(weights),
+      rows_of_traces_(weights),
+      rows_of_points_({1, 1, 1}),
       strides_(PlateNeighbours(gap).strides()),
       number_(gap.state.size()) {
   for (std::size_t n = 0; n < gaps.nodes.size(); ++n) number_[gaps.nodes[n].place] = static_cast<std::uint32_t>(n);
@@ -42,15 +43,15 @@ double NarrowPlate::mean_around(std::span<const PlateNode> nodes) const {
   return count == 0 ? 0 : sum / count;
 }
 
-void NarrowPlate::add_row(const PlateNode& node, const PlateGap& which, double mean) {
-  const std::uint32_t number = rows_.number(node.available);
-  const PlateRow& row = rows_[number];
+void NarrowPlate::add_row(const PlateNode& node, const PlateGap& which) {
+  const std::uint32_t number = rows_->number(node.available);
+  const PlateRow& row = (*rows_)[number];
   double right = 0;
   for (int m = 1; m < kPlateReach; ++m) {
     if (row[m] == 0) continue;
     const std::size_t place = node.place + strides_[m];
     if (gap_.state[place] == NodeState::known) {
-      right -= row[m] * (static_cast<double>(gap_.samples.value[place]) - mean);
+      right -= row[m] * (static_cast<double>(gap_.samples.value[place]) - mean_);
     } else {
       link_.push_back(number_[place] - which.first);
       link_offset_.push_back(static_cast<std::uint8_t>(m));
@@ -61,12 +62,12 @@ void NarrowPlate::add_row(const PlateNode& node, const PlateGap& which, double m
   right_.push_back(right);
   // A node that no stencil holds keeps its value.
   inverse_diagonal_.push_back(row[0] > 0 ? 1 / row[0] : 0);
-  x_.push_back(static_cast<double>(gap_.samples.value[node.place]) - mean);
+  x_.push_back(static_cast<double>(gap_.samples.value[node.place]) - mean_);
 }
 
 void NarrowPlate::multiply(const std::vector<double>& x, std::vector<double>& y) const {
   for (std::size_t n = 0; n < x.size(); ++n) {
-    const PlateRow& row = rows_[row_number_[n]];
+    const PlateRow& row = (*rows_)[row_number_[n]];
     double sum = row[0] * x[n];
     for (std::uint32_t l = first_link_[n]; l < first_link_[n + 1]; ++l) sum += row[link_offset_[l]] * x[link_[l]];
     y[n] = sum;
@@ -112,10 +113,11 @@ void NarrowPlate::assemble(std::span<const PlateNode> nodes, const PlateGap& whi
   right_.clear();
   inverse_diagonal_.clear();
   x_.clear();
-  const double mean = mean_around(nodes);
+  rows_ = which.scattered ? &rows_of_points_ : &rows_of_traces_;
+  mean_ = mean_around(nodes);
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     if (n % kRowsBetweenAsking == kRowsBetweenAsking - 1 && progress_.cancelled()) return;
-    add_row(nodes[n], which, mean);
+    add_row(nodes[n], which);
   }
   for (std::vector<double>* vector : {&residual_, &direction_, &image_}) vector->resize(nodes.size());
 }
@@ -127,8 +129,7 @@ int NarrowPlate::solve(const PlateGap& which) {
   double reference = 0;
   for (std::size_t n = 0; n < nodes.size(); ++n) reference += right_[n] * right_[n] * inverse_diagonal_[n];
   const int iterations = iterate(options_.tolerance * options_.tolerance * reference);
-  const double mean = mean_around(nodes);
-  for (std::size_t n = 0; n < nodes.size(); ++n) gap_.samples.value[nodes[n].place] = clamped(x_[n] + mean, options_);
+  for (std::size_t n = 0; n < nodes.size(); ++n) gap_.samples.value[nodes[n].place] = clamped(x_[n] + mean_, options_);
   return iterations;
 }
 

@@ -17,7 +17,7 @@ namespace geosis {
 float clamped(double value, const ThinPlateOptions& options);
 
 /// Solves gaps that are only a few nodes across: conjugate gradients with the diagonal over the gap's nodes, in double
-/// precision. The number of iterations grows with the square of the gap's width.
+/// precision. The number of iterations grows with the square of the gap's width. Scattered gaps take c_a = 1.
 class NarrowPlate {
  public:
   static constexpr int kMaxIterations = 2000;
@@ -35,7 +35,7 @@ class NarrowPlate {
  private:
   void assemble(std::span<const PlateNode> nodes, const PlateGap& which);
   double mean_around(std::span<const PlateNode> nodes) const;
-  void add_row(const PlateNode& node, const PlateGap& which, double mean);
+  void add_row(const PlateNode& node, const PlateGap& which);
   void multiply(const std::vector<double>& x, std::vector<double>& y) const;
   int iterate(double enough);
 
@@ -43,13 +43,15 @@ class NarrowPlate {
   const PlateGaps& gaps_;
   const ThinPlateOptions& options_;
   const Progress& progress_;
-  PlateRows rows_;
+  PlateRows rows_of_traces_, rows_of_points_;
+  PlateRows* rows_ = nullptr;  // of the gap at hand
   std::array<std::ptrdiff_t, kPlateReach> strides_;
   std::vector<std::uint32_t> number_;  // (nodes of the box): place -> number in gaps.nodes
 
   // The gap's equations: row n has links [first_link_[n], first_link_[n + 1]) besides its diagonal.
   std::vector<std::uint32_t> row_number_, first_link_, link_;
   std::vector<std::uint8_t> link_offset_;
+  double mean_ = 0;
   std::vector<double> inverse_diagonal_, right_, x_, residual_, direction_, image_;
 };
 

@@ -32,6 +32,12 @@ class Groups {
   std::vector<std::uint32_t> parent_;
 };
 
+/// Whether a node lies between two wanted ones on an axis: numbers 1, 2 | 3, 4 | 5, 6 of the reach.
+bool is_enclosed(std::uint32_t wanted) {
+  const auto both = [wanted](std::uint32_t pair) { return (wanted & pair) == pair; };
+  return both(0b110) || both(0b11000) || both(0b1100000);
+}
+
 /// Wanted nodes that share a stencil with another one, by rising place, and what lies round them.
 struct JoinedNodes {
   std::vector<PlateNode> nodes;
@@ -102,22 +108,26 @@ class GapFinder {
   void group(PlateGaps& result) const {
     const std::size_t count = joined_.nodes.size();
     Groups groups = join();
-    std::vector<std::uint32_t> gap_of(count);
+    std::vector<std::uint32_t> gap_of(count), enclosed;
     for (std::size_t n = 0; n < count; ++n) {
       const std::uint32_t root = groups.root(static_cast<std::uint32_t>(n));
       if (root == n) {
         gap_of[n] = static_cast<std::uint32_t>(result.gaps.size());
         result.gaps.push_back({});
+        enclosed.push_back(0);
       } else {
         gap_of[n] = gap_of[root];
       }
       PlateGap& gap = result.gaps[gap_of[n]];
       ++gap.last;
       gap.wide = gap.wide || is_heart_of_wide(n);
+      enclosed[gap_of[n]] += is_enclosed(joined_.wanted[n]);
     }
     std::uint32_t before = 0;
-    for (PlateGap& gap : result.gaps) {
+    for (std::size_t g = 0; g < result.gaps.size(); ++g) {
+      PlateGap& gap = result.gaps[g];
       const std::uint32_t size = gap.last;
+      gap.scattered = std::uint64_t{4} * enclosed[g] < size;
       gap.first = gap.last = before;
       before += size;
     }

@@ -18,7 +18,8 @@ struct PlateNode {
 /// Wanted nodes joined by stencils: nodes [first, last) of PlateGaps::nodes, by rising place.
 struct PlateGap {
   std::uint32_t first = 0, last = 0;
-  bool wide = false;  ///< holds a cube of 5^3 wanted nodes
+  bool wide = false;       ///< holds a cube of 5^3 wanted nodes
+  bool scattered = false;  ///< fewer than a quarter of its nodes lie between two others on an axis
 };
 
 struct PlateGaps {

@@ -24,8 +24,7 @@ Vec3d plate_weights(const Vec3d& step_lengths) {
   return weights;
 }
 
-/// A gap of one node has one equation. Its own weights: between close neighbours on every axis the step lengths, which
-/// are measured over whole volumes, only do harm.
+/// A gap of one node has one equation.
 void fill_single(GapBox& gap, const std::vector<PlateNode>& nodes, const ThinPlateOptions& options) {
   PlateRows rows({1, 1, 1});
   const auto& strides = PlateNeighbours(gap).strides();

@@ -21,9 +21,12 @@ struct ThinPlateOptions {
 ///       + sum_{a<b} 2 c_a c_b (f(x) - f(x+e_a) - f(x+e_b) + f(x+e_a+e_b))^2,     c_a = 1 / h_a^2,
 ///
 /// over all stencils of the box that hold a wanted node and no absent one. Linear fields bend nowhere and come back;
-/// at absent nodes and at the box's faces the plate ends free. In a gap of one single node c_a = 1. Gaps are wanted
-/// nodes joined by stencils; each is solved by itself, so its values do not depend on what else the box holds, provided
-/// the box reaches two nodes further than the gap wherever the volume does.
+/// at absent nodes and at the box's faces the plate ends free. Gaps are wanted nodes joined by stencils; each is solved
+/// by itself, so its values do not depend on what else the box holds, provided the box reaches two nodes further than
+/// the gap wherever the volume does.
+///
+/// Single nodes and scattered gaps (PlateGap) take c_a = 1: between close samples on every axis, step lengths that are
+/// measured over a whole volume do harm.
 ///
 /// step_lengths  h, per axis, above zero; only their ratios count. Known nodes are finite.
 /// result        every wanted node is finite and in [low, high]; the same for any number of calling threads. A node

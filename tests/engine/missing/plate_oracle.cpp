@@ -1,5 +1,6 @@
 #include "tests/engine/missing/plate_oracle.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -78,43 +79,92 @@ std::vector<double> cholesky_solve(std::vector<double> M, std::vector<double> b)
   return b;
 }
 
+/// What the solver is asked to find: wanted nodes, numbered, and the gaps that they belong to.
+class Unknowns {
+ public:
+  Unknowns(const GapBox& gap, const std::vector<Term>& terms) : gap_(gap) {
+    for (std::size_t place = 0; place < gap.state.size(); ++place)
+      if (gap.state[place] == NodeState::wanted) number_.emplace(place, number_.size());
+    label(terms);
+    decide_which_are_scattered();
+  }
+
+  std::size_t count() const { return number_.size(); }
+  /// -1 for nodes that are not wanted.
+  int number(const Node& node) const {
+    const auto found = is_inside(gap_, node) ? number_.find(place_of(gap_, node)) : number_.end();
+    return found == number_.end() ? -1 : static_cast<int>(found->second);
+  }
+  bool is_scattered(int unknown) const { return scattered_.at(label_[static_cast<std::size_t>(unknown)]); }
+
+ private:
+  /// The smallest number of each gap, by handing it on until nothing changes.
+  void label(const std::vector<Term>& terms) {
+    label_.resize(count());
+    for (std::size_t n = 0; n < count(); ++n) label_[n] = n;
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (const Term& term : terms) {
+        std::size_t smallest = count();
+        for (const auto& [node, factor] : term.factors)
+          if (number(node) >= 0) smallest = std::min(smallest, label_[static_cast<std::size_t>(number(node))]);
+        for (const auto& [node, factor] : term.factors) {
+          if (number(node) < 0 || label_[static_cast<std::size_t>(number(node))] == smallest) continue;
+          label_[static_cast<std::size_t>(number(node))] = smallest;
+          changed = true;
+        }
+      }
+    }
+  }
+
+  void decide_which_are_scattered() {
+    std::map<std::size_t, std::pair<int, int>> nodes_and_enclosed;
+    const GridShape shape = gap_.samples.shape;
+    for (int i = 0; i < shape.inlines; ++i)
+      for (int j = 0; j < shape.crosslines; ++j)
+        for (int k = 0; k < shape.samples; ++k) {
+          const Node node{i, j, k};
+          if (number(node) < 0) continue;
+          auto& [nodes, enclosed] = nodes_and_enclosed[label_[static_cast<std::size_t>(number(node))]];
+          ++nodes;
+          bool between = false;
+          for (int axis = 0; axis < 3; ++axis)
+            between = between || (number(moved(node, axis, -1)) >= 0 && number(moved(node, axis, 1)) >= 0);
+          enclosed += between;
+        }
+    for (const auto& [gap, tally] : nodes_and_enclosed) scattered_[gap] = tally.second * 4 < tally.first;
+  }
+
+  const GapBox& gap_;
+  std::map<std::size_t, std::size_t> number_;  // by place
+  std::vector<std::size_t> label_;
+  std::map<std::size_t, bool> scattered_;  // by label
+};
+
 }  // namespace
 
 std::vector<double> least_bending(const GapBox& gap, Vec3d weights) {
-  std::map<std::size_t, std::size_t> unknown;  // place -> number
-  for (std::size_t place = 0; place < gap.state.size(); ++place)
-    if (gap.state[place] == NodeState::wanted) unknown.emplace(place, unknown.size());
-  const std::size_t n = unknown.size();
   const std::vector<Term> terms = all_terms(gap);
-
-  std::vector<int> partners(n, 0);  // other unknowns in a node's stencils
-  for (const Term& term : terms) {
-    std::vector<std::size_t> members;
-    for (const auto& [node, factor] : term.factors)
-      if (unknown.count(place_of(gap, node)) != 0) members.push_back(unknown[place_of(gap, node)]);
-    for (const std::size_t member : members) partners[member] += static_cast<int>(members.size()) - 1;
-  }
-
+  const Unknowns unknowns(gap, terms);
+  const std::size_t n = unknowns.count();
   std::vector<double> M(n * n, 0.0), b(n, 0.0);
   for (const Term& term : terms) {
-    bool alone = false, complete = true;
+    bool scattered = false, complete = true;
     for (const auto& [node, factor] : term.factors) {
-      const auto found = unknown.find(place_of(gap, node));
-      alone = alone || (found != unknown.end() && partners[found->second] == 0);
+      scattered = scattered || (unknowns.number(node) >= 0 && unknowns.is_scattered(unknowns.number(node)));
       complete = complete && gap.state[place_of(gap, node)] != NodeState::absent;
     }
     if (!complete) continue;
-    const double c = alone ? 1 : weights[term.axis_a] * weights[term.axis_b];
+    const double c = scattered ? 1 : weights[term.axis_a] * weights[term.axis_b];
     for (const auto& [row, row_factor] : term.factors) {
-      const auto r = unknown.find(place_of(gap, row));
-      if (r == unknown.end()) continue;
+      if (unknowns.number(row) < 0) continue;
+      const auto r = static_cast<std::size_t>(unknowns.number(row));
       for (const auto& [column, column_factor] : term.factors) {
-        const auto x = unknown.find(place_of(gap, column));
         const double product = c * row_factor * column_factor;
-        if (x != unknown.end())
-          M[r->second * n + x->second] += product;
+        if (unknowns.number(column) >= 0)
+          M[r * n + static_cast<std::size_t>(unknowns.number(column))] += product;
         else
-          b[r->second] -= product * static_cast<double>(gap.samples.value[place_of(gap, column)]);
+          b[r] -= product * static_cast<double>(gap.samples.value[place_of(gap, column)]);
       }
     }
   }

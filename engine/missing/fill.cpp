@@ -11,6 +11,7 @@
 #include "engine/missing/axis_barycentre.h"
 #include "engine/missing/brick_nodes.h"
 #include "engine/missing/distance_limit.h"
+#include "engine/missing/fill_gaps.h"
 #include "engine/missing/fill_share.h"
 #include "engine/missing/fill_writer.h"
 #include "engine/missing/linear_fill.h"
@@ -100,11 +101,17 @@ class Filling {
       if (!made) return std::move(made).error();
       solver = *std::move(made);
     }
+    const BitLines fillable = solver && options_.max_distance ? nodes_ : BitLines();
     if (options_.max_distance)
       drop_beyond(*options_.max_distance, volume_.shape(), scan_.valid, nodes_, threads_, progress_);
     auto writer = FillWriter::create(volume_, count_records(), path);
     if (!writer) return std::move(writer).error();
     write_linear(*writer, solver ? kStarted : kLinear);
+    if (solver) {
+      const GapSurvey survey{volume_, barycentre_, options_.max_distance ? fillable : nodes_};
+      if (auto solved = fill_gaps(survey, solver, {}, *writer, threads_, progress_, kStarted, kSolved); !solved)
+        return std::move(solved).error();
+    }
     index(*writer, solver ? kSolved : kLinear);
     if (progress_.cancelled()) return cancelled();
     return std::move(*writer).finish(nodes_.count());

@@ -36,7 +36,7 @@ class Planner {
   void add(const Gap& gap) {
     const GridShape side = shape_of(gap.box);
     if (std::max({side.inlines, side.crosslines, side.samples}) <= limits_.small_gap) return add_small(gap);
-    if (shape_of(grown(gap.box, kGapMargin, gaps_.shape)).count() > limits_.whole_box) return add_tiles(gap);
+    if (shape_of(grown(gap.box, limits_.margin, gaps_.shape)).count() > limits_.whole_box) return add_tiles(gap);
     plan_.group_of.push_back(groups_);
     plan_.jobs.push_back({kWholeWave, groups_++, gap.box, gap.box, {}, {}});
   }
@@ -67,7 +67,7 @@ class Planner {
           job.core.first = at;
           for (int axis = 0; axis < 3; ++axis)
             job.core.last[axis] = std::min(at[axis] + job.tile_shape[axis] - 1, gap.box.last[axis]);
-          job.solved = grown(job.core, limits_.overlap, gaps_.shape);
+          job.solved = grown(job.core, {limits_.overlap, limits_.overlap, limits_.overlap}, gaps_.shape);
           job.wave = job.wave_of(at);
           plan_.jobs.push_back(job);
         }
@@ -97,10 +97,10 @@ GapPlan plan_gap_jobs(const Gaps& gaps, const GapLimits& limits) {
   return Planner(gaps, limits).plan();
 }
 
-GridBox grown(GridBox box, std::int32_t layers, GridShape shape) {
+GridBox grown(GridBox box, GridShape layers, GridShape shape) {
   for (int axis = 0; axis < 3; ++axis) {
-    box.first[axis] = std::max(box.first[axis] - layers, 0);
-    box.last[axis] = std::min(box.last[axis] + layers, shape[axis] - 1);
+    box.first[axis] = std::max(box.first[axis] - layers[axis], 0);
+    box.last[axis] = std::min(box.last[axis] + layers[axis], shape[axis] - 1);
   }
   return box;
 }

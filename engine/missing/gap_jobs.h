@@ -8,8 +8,9 @@
 
 namespace geosis {
 
-/// How gaps are cut into boxes. They depend on the data alone.
+/// How gaps are cut into boxes.
 struct GapLimits {
+  GridShape margin{2, 2, 2};           ///< layers around what is wanted; two hold all stencils
   std::int32_t small_gap = 32;         ///< nodes a side: smaller gaps are solved together,
   std::int32_t small_tile = 64;        ///< those that begin in one tile
   std::int64_t whole_box = 4'000'000;  ///< nodes of the box of a gap that is solved whole
@@ -17,8 +18,6 @@ struct GapLimits {
   std::int32_t overlap = 12;           ///< nodes that a tile solves beyond its own
 };
 
-/// Layers of nodes that a box has around what is wanted in it.
-inline constexpr std::int32_t kGapMargin = 2;
 /// Jobs of one wave do not read what others of it write: many small boxes, then big gaps whole, then eight waves of
 /// tiles, of which no two neighbours are in one.
 inline constexpr int kSmallWave = 0, kWholeWave = 1, kFirstTileWave = 2, kWaves = 10;
@@ -44,7 +43,7 @@ struct GapPlan {
 GapPlan plan_gap_jobs(const Gaps& gaps, const GapLimits& limits);
 
 /// The box with `layers` more on each side, as far as the volume goes.
-GridBox grown(GridBox box, std::int32_t layers, GridShape shape);
+GridBox grown(GridBox box, GridShape layers, GridShape shape);
 GridShape shape_of(const GridBox& box);
 
 }  // namespace geosis

@@ -19,8 +19,8 @@ class Reader {
   Reader(const GapSurvey& survey, const Gaps& gaps, const GapPlan& plan, const GapJob& job, FillWriter& writer)
       : survey_(survey), gaps_(gaps), plan_(plan), job_(job), writer_(writer) {}
 
-  Result<GapBox> read(const Progress& progress) {
-    const GridBox box = grown(job_.solved, kGapMargin, survey_.shape());
+  Result<GapBox> read(GridShape margin, const Progress& progress) {
+    const GridBox box = grown(job_.solved, margin, survey_.shape());
     auto samples = read_box(survey_.volume, box);
     if (!samples) return std::move(samples).error();
     gap_.samples = *std::move(samples);
@@ -80,8 +80,8 @@ class Reader {
 }  // namespace
 
 Result<GapBox> read_gap(const GapSurvey& survey, const Gaps& gaps, const GapPlan& plan, const GapJob& job,
-                        FillWriter& writer, const Progress& progress) {
-  return Reader(survey, gaps, plan, job, writer).read(progress);
+                        GridShape margin, FillWriter& writer, const Progress& progress) {
+  return Reader(survey, gaps, plan, job, writer).read(margin, progress);
 }
 
 }  // namespace geosis

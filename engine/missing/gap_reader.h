@@ -12,12 +12,12 @@
 
 namespace geosis {
 
-/// The box of a job: its nodes wanted, from the axis barycentre; valid samples known; nodes of the same gap known that
-/// an earlier wave has decided, or that lie beyond what the job solves (by the axis barycentre); nodes of other gaps
-/// absent, as are those outside the outline.
+/// The box of a job, with `margin` layers around what it solves: its nodes wanted, from the axis barycentre; valid
+/// samples known; nodes of the same gap known that an earlier wave has decided, or that lie beyond what the job solves
+/// (by the axis barycentre); nodes of other gaps absent, as are those outside the outline.
 ///
 /// errors   malformed_input: a damaged brick.  cancelled.
 Result<GapBox> read_gap(const GapSurvey& survey, const Gaps& gaps, const GapPlan& plan, const GapJob& job,
-                        FillWriter& writer, const Progress& progress);
+                        GridShape margin, FillWriter& writer, const Progress& progress);
 
 }  // namespace geosis

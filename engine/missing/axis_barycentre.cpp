@@ -10,6 +10,7 @@ namespace geosis {
 namespace {
 
 constexpr double kHalfReliable = 0.4;  // step lengths
+constexpr int kMostRounds = 6;         // three are needed
 
 /// What one axis contributes.
 struct AxisShare {
@@ -30,60 +31,65 @@ bool is_met(const Estimate& sample) {
   return sample.distance >= 0;
 }
 
-/// Members of `line`, a bit for each sample, are those of all lines.
-void unite(std::span<std::uint64_t> all, std::span<const std::uint64_t> line) {
-  for (std::size_t word = 0; word < all.size(); ++word) all[word] |= line[word];
-}
-
-/// For each inline and each crossline, the samples at which one of its traces is valid.
-struct LineUnions {
-  BitLines inlines, crosslines;
-};
-LineUnions unite_lines(GridShape shape, const BitLines& valid) {
-  LineUnions unions{BitLines(static_cast<std::size_t>(shape.inlines), shape.samples),
-                    BitLines(static_cast<std::size_t>(shape.crosslines), shape.samples)};
-  std::size_t trace = 0;
-  for (std::int32_t i = 0; i < shape.inlines; ++i) {
-    for (std::int32_t j = 0; j < shape.crosslines; ++j, ++trace) {
-      unite(unions.inlines.line(static_cast<std::size_t>(i)), valid.line(trace));
-      unite(unions.crosslines.line(static_cast<std::size_t>(j)), valid.line(trace));
-    }
-  }
-  return unions;
-}
-
 template <class Visit>
 void for_each_bit(std::uint64_t bits, const Visit& visit) {
   for (; bits != 0; bits &= bits - 1) visit(std::countr_zero(bits));
 }
 
-bool is_dead(std::span<const std::uint64_t> trace) {
-  return std::ranges::none_of(trace, [](std::uint64_t word) { return word != 0; });
+/// Adds the members of a line, a bit for each sample, to those of another one.
+void unite(std::span<std::uint64_t> all, std::span<const std::uint64_t> line) {
+  for (std::size_t word = 0; word < all.size(); ++word) all[word] |= line[word];
 }
 
-/// Nodes inside the outline that are valid or have a valid node on one of their lines. std::nullopt: all of them.
-std::optional<BitLines> reached_nodes(GridShape shape, const BitLines& valid, const std::vector<std::uint8_t>& inside) {
-  const LineUnions unions = unite_lines(shape, valid);
+/// For each inline and each crossline, the samples at which one of its traces has a member.
+struct LineUnions {
+  BitLines inlines, crosslines;
+};
+LineUnions unite_lines(GridShape shape, const BitLines& members) {
+  LineUnions unions{BitLines(static_cast<std::size_t>(shape.inlines), shape.samples),
+                    BitLines(static_cast<std::size_t>(shape.crosslines), shape.samples)};
+  std::size_t trace = 0;
+  for (std::int32_t i = 0; i < shape.inlines; ++i) {
+    for (std::int32_t j = 0; j < shape.crosslines; ++j, ++trace) {
+      unite(unions.inlines.line(static_cast<std::size_t>(i)), members.line(trace));
+      unite(unions.crosslines.line(static_cast<std::size_t>(j)), members.line(trace));
+    }
+  }
+  return unions;
+}
+
+/// Nodes inside the outline that are members or have one on their lines.
+BitLines reach_from(GridShape shape, const BitLines& members, const std::vector<std::uint8_t>& inside) {
+  const LineUnions unions = unite_lines(shape, members);
   BitLines reached(inside.size(), shape.samples);
-  bool all = true;
   std::size_t trace = 0;
   for (std::int32_t i = 0; i < shape.inlines; ++i) {
     for (std::int32_t j = 0; j < shape.crosslines; ++j, ++trace) {
       if (!inside[trace]) continue;
       const auto line = reached.line(trace);
-      if (is_dead(valid.line(trace))) {
-        unite(line, unions.inlines.line(static_cast<std::size_t>(i)));
-        unite(line, unions.crosslines.line(static_cast<std::size_t>(j)));
-      } else {
+      if (std::ranges::any_of(members.line(trace), [](std::uint64_t word) { return word != 0; })) {
         std::ranges::fill(line, ~std::uint64_t{0});
         line.back() = reached.last_word();
+      } else {
+        unite(line, unions.inlines.line(static_cast<std::size_t>(i)));
+        unite(line, unions.crosslines.line(static_cast<std::size_t>(j)));
       }
-      all = all && std::ranges::all_of(line.first(line.size() - 1), [](std::uint64_t w) { return ~w == 0; }) &&
-            line.back() == reached.last_word();
     }
   }
-  if (all) return std::nullopt;
   return reached;
+}
+
+/// What rounds 1, 2, ... reach, without the last one, which reaches all that is inside.
+std::vector<BitLines> reach_in_rounds(GridShape shape, const BitLines& valid, const std::vector<std::uint8_t>& inside) {
+  const auto traces = static_cast<std::uint64_t>(std::ranges::count(inside, 1));
+  const std::uint64_t all = traces * static_cast<std::uint64_t>(shape.samples);
+  std::vector<BitLines> rounds;
+  for (int round = 0; round < kMostRounds; ++round) {
+    BitLines reached = reach_from(shape, rounds.empty() ? valid : rounds.back(), inside);
+    if (reached.count() == all) break;
+    rounds.push_back(std::move(reached));
+  }
+  return rounds;
 }
 
 }  // namespace
@@ -135,13 +141,16 @@ struct AxisBarycentre::Met {
 
 AxisBarycentre::AxisBarycentre(const BrickViews& views, const BitLines& valid, Vec3d step_lengths,
                                const std::vector<std::uint8_t>& inside)
-    : views_(views), valid_(valid), shape_(views.layout().shape()), step_lengths_(step_lengths) {
-  reached_ = reached_nodes(shape_, valid, inside);
-}
+    : views_(views),
+      valid_(valid),
+      shape_(views.layout().shape()),
+      step_lengths_(step_lengths),
+      reached_(reach_in_rounds(shape_, valid, inside)) {}
 
 void AxisBarycentre::estimate(const BrickRow& row, std::uint64_t nodes, Row& estimates) const {
-  const std::uint64_t left = nodes & ~from_valid(row, nodes, estimates);
-  if (left != 0 && reached_) from_reached(row, left, estimates);
+  std::uint64_t left = nodes & ~from_valid(row, nodes, estimates);
+  for (std::size_t round = 0; left != 0 && round < reached_.size(); ++round)
+    left &= ~from_reached(reached_[round], row, left, estimates);
 }
 
 /// Steps from trace to trace until every node of the row has met a member, or the volume ends:
@@ -191,14 +200,15 @@ std::uint64_t AxisBarycentre::from_valid(const BrickRow& row, std::uint64_t node
   return met.any();
 }
 
-// No node that is met here is valid: its line would have been met in the first step.
-void AxisBarycentre::from_reached(const BrickRow& row, std::uint64_t nodes, Row& estimates) const {
+// No node that is met here is valid: its line would have been met in the first round.
+std::uint64_t AxisBarycentre::from_reached(const BitLines& reached, const BrickRow& row, std::uint64_t nodes,
+                                           Row& estimates) const {
   Met met;
   Row source;
   for (int axis = 0; axis < 2; ++axis) {
     for (const int way : {-1, 1}) {
-      walk(row, axis, way, nodes, *reached_, [&](const BrickRow& other, std::uint64_t found, std::int32_t steps) {
-        from_valid(other, found, source);
+      walk(row, axis, way, nodes, reached, [&](const BrickRow& other, std::uint64_t found, std::int32_t steps) {
+        estimate(other, found, source);
         for_each_bit(found, [&](int k) {
           const Estimate& own = source[static_cast<std::size_t>(k)];
           met.add(axis, way, k, {own.value, own.distance + step_lengths_[axis] * steps});
@@ -209,21 +219,21 @@ void AxisBarycentre::from_reached(const BrickRow& row, std::uint64_t nodes, Row&
   for_each_bit(nodes, [&](int k) {
     const std::int32_t node = row.first_k() + k;
     const std::size_t line = trace(row.i, row.j);
-    const std::int32_t ends[2] = {reached_->before(line, node), reached_->after(line, node)};
-    for (const std::int32_t end : ends) {
+    for (const std::int32_t end : {reached.before(line, node), reached.after(line, node)}) {
       if (end < 0) continue;
-      const Estimate own = one_from_valid({row.i, row.j, end});
+      const Estimate own = estimate_one({row.i, row.j, end});
       met.add(2, end - node, k, {own.value, own.distance + step_lengths_[2] * std::abs(end - node)});
     }
   });
-  for_each_bit(nodes, [&](int k) { estimates[static_cast<std::size_t>(k)] = met.combined(k); });
+  for_each_bit(met.any(), [&](int k) { estimates[static_cast<std::size_t>(k)] = met.combined(k); });
+  return met.any();
 }
 
-Estimate AxisBarycentre::one_from_valid(GridIndex node) const {
+Estimate AxisBarycentre::estimate_one(GridIndex node) const {
   const BrickRow row{node.i, node.j, std::min(node.k / kBrickCells, views_.layout().grid().samples - 1)};
   Row estimates;
   const int k = node.k - row.first_k();
-  from_valid(row, std::uint64_t{1} << k, estimates);
+  estimate(row, std::uint64_t{1} << k, estimates);
   return estimates[static_cast<std::size_t>(k)];
 }
 

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "engine/base/vec3.h"
@@ -33,9 +32,10 @@ std::uint8_t reliability_of(double distance);
 /// The axis barycentre: fills any missing node inside the outline, whatever else is filled.
 ///
 /// The nearest valid samples on the node's three lines decide. A node that meets none takes the nearest nodes that are
-/// valid or filled so, with their distances carried on. That second step always ends: the node lies on a dead trace
-/// (a valid one has a valid sample on its k line); a dead trace inside the outline has valid traces on all four sides,
-/// and these are filled from top to bottom.
+/// valid or filled so, with their distances carried on, and so on. Three rounds are enough: a trace with a valid sample
+/// is filled from top to bottom in the first one. A dead trace inside the outline has such traces on both sides on one
+/// of its lines: some of it is filled in the first round, and the rest from that in the second. Where dead lines cross
+/// it is one round later.
 class AxisBarycentre {
  public:
   /// Estimate k of a row, for sample first_k() + k.
@@ -54,11 +54,12 @@ class AxisBarycentre {
   struct Met;
   /// From valid samples alone; returns the nodes that met any.
   std::uint64_t from_valid(const BrickRow& row, std::uint64_t nodes, Row& estimates) const;
-  void from_reached(const BrickRow& row, std::uint64_t nodes, Row& estimates) const;
+  /// From the nodes that an earlier round has reached; the same.
+  std::uint64_t from_reached(const BitLines& reached, const BrickRow& row, std::uint64_t nodes, Row& estimates) const;
   template <class Take>
   void walk(const BrickRow& row, int axis, int way, std::uint64_t nodes, const BitLines& members,
             const Take& take) const;
-  Estimate one_from_valid(GridIndex node) const;
+  Estimate estimate_one(GridIndex node) const;
 
   std::size_t trace(std::int32_t i, std::int32_t j) const {
     return static_cast<std::size_t>(i) * shape_.crosslines + j;
@@ -68,7 +69,7 @@ class AxisBarycentre {
   const BitLines& valid_;
   GridShape shape_;
   Vec3d step_lengths_;
-  std::optional<BitLines> reached_;  ///< valid, or met by the first step; only if there are others to fill
+  std::vector<BitLines> reached_;  ///< valid, or filled in rounds 1, 2, ...; the last round's, all of them, is left out
 };
 
 }  // namespace geosis

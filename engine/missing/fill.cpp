@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "engine/missing/axis_barycentre.h"
 #include "engine/missing/brick_nodes.h"
 #include "engine/missing/distance_limit.h"
+#include "engine/missing/fill_gaps.h"
 #include "engine/missing/fill_share.h"
 #include "engine/missing/fill_writer.h"
 #include "engine/missing/linear_fill.h"
@@ -94,18 +96,26 @@ class Filling {
         barycentre_(scan.views, scan.valid, scan.step_lengths, inside_) {}
 
   Result<std::unique_ptr<FilledVolume>> run(const std::optional<std::filesystem::path>& path) {
-    GapSolver solver;
+    std::optional<GapMethod> method;
     if (options_.method == FillMethod::rbf) {
-      auto made = make_gap_solver(volume_, options_, scan_.step_lengths, threads_, progress_);
+      auto made = make_gap_method(volume_, options_, scan_.step_lengths, threads_, progress_);
       if (!made) return std::move(made).error();
-      solver = *std::move(made);
+      method = *std::move(made);
     }
+    const BitLines fillable = method && options_.max_distance ? nodes_ : BitLines();
     if (options_.max_distance)
       drop_beyond(*options_.max_distance, volume_.shape(), scan_.valid, nodes_, threads_, progress_);
     auto writer = FillWriter::create(volume_, count_records(), path);
     if (!writer) return std::move(writer).error();
-    write_linear(*writer, solver ? kStarted : kLinear);
-    index(*writer, solver ? kSolved : kLinear);
+    write_linear(*writer, method ? kStarted : kLinear);
+    if (method) {
+      const GapSurvey survey{volume_, barycentre_, options_.max_distance ? fillable : nodes_};
+      if (auto solved = fill_gaps(survey, method->solve, {.margin = method->margin}, *writer, threads_, progress_,
+                                  kStarted, kSolved);
+          !solved)
+        return std::move(solved).error();
+    }
+    index(*writer, method ? kSolved : kLinear);
     if (progress_.cancelled()) return cancelled();
     return std::move(*writer).finish(nodes_.count());
   }

@@ -2,7 +2,7 @@
 
 namespace geosis {
 
-Result<GapSolver> make_gap_solver(const BrickedVolume&, const FillOptions& options, Vec3d, int, Progress&) {
+Result<GapMethod> make_gap_method(const BrickedVolume&, const FillOptions& options, Vec3d, int, Progress&) {
   switch (options.kernel) {
     case RbfKernel::polyharmonic:
       return Error{ErrorCode::unsupported, "filling with the polyharmonic kernel"};

@@ -14,11 +14,17 @@ namespace geosis {
 /// Fills the wanted nodes of one box; called from several threads at once. errors: as the method's, cancelled.
 using GapSolver = std::function<Result<void>(GapBox& gap, Progress& progress)>;
 
-/// The solver for the gaps of a volume that the options ask for; method is rbf. This is the one place that knows the
+/// A solver, and the layers of nodes that it wants around what it solves.
+struct GapMethod {
+  GapSolver solve;
+  GridShape margin{2, 2, 2};
+};
+
+/// The method for the gaps of a volume that the options ask for; method is rbf. This is the one place that knows the
 /// methods behind rbf.
 ///
 /// errors   unsupported: the kernel.  Whatever the method needs to prepare itself: malformed_input, cancelled.
-Result<GapSolver> make_gap_solver(const BrickedVolume& volume, const FillOptions& options, Vec3d step_lengths,
+Result<GapMethod> make_gap_method(const BrickedVolume& volume, const FillOptions& options, Vec3d step_lengths,
                                   int threads, Progress& progress);
 
 }  // namespace geosis

@@ -52,19 +52,40 @@ bool is_live(const ScalarField& field, std::int32_t i, std::int32_t j) {
   return false;
 }
 
+/// Sides of the trace on which chosen(n) holds for some n of its line, its own place on both.
+struct Sides {
+  bool before = false, after = false;
+  bool both() const { return before && after; }
+  bool none() const { return !before && !after; }
+};
+template <class Chosen>
+Sides sides_of(std::int32_t place, std::int32_t count, const Chosen& chosen) {
+  Sides sides;
+  for (std::int32_t n = 0; n < count; ++n) {
+    if (!chosen(n)) continue;
+    sides.before = sides.before || n <= place;
+    sides.after = sides.after || n >= place;
+  }
+  return sides;
+}
+
+bool is_inside_by_live_lines(const ScalarField& field, std::int32_t i, std::int32_t j) {
+  const Sides across = sides_of(i, field.shape.inlines, [&](std::int32_t n) { return is_live(field, n, j); });
+  const Sides along = sides_of(j, field.shape.crosslines, [&](std::int32_t n) { return is_live(field, i, n); });
+  return (across.both() && along.both()) || (across.both() && along.none()) || (across.none() && along.both());
+}
+
 bool is_inside(const ScalarField& field, std::int32_t i, std::int32_t j) {
-  bool left = false, right = false, front = false, back = false;
-  for (std::int32_t n = 0; n < field.shape.inlines; ++n) {
-    if (!is_live(field, n, j)) continue;
-    left = left || n <= i;
-    right = right || n >= i;
-  }
-  for (std::int32_t n = 0; n < field.shape.crosslines; ++n) {
-    if (!is_live(field, i, n)) continue;
-    front = front || n <= j;
-    back = back || n >= j;
-  }
-  return left && right && front && back;
+  const auto on_inlines = [&](std::int32_t n) { return is_live(field, n, j); };
+  const auto on_crosslines = [&](std::int32_t n) { return is_live(field, i, n); };
+  if (!sides_of(i, field.shape.inlines, on_inlines).none() ||
+      !sides_of(j, field.shape.crosslines, on_crosslines).none())
+    return is_inside_by_live_lines(field, i, j);
+  return sides_of(i, field.shape.inlines, [&](std::int32_t n) { return is_inside_by_live_lines(field, n, j); })
+             .both() &&
+         sides_of(j, field.shape.crosslines, [&](std::int32_t n) {
+           return is_inside_by_live_lines(field, i, n);
+         }).both();
 }
 
 /// Value and effective distance of the first source met on the way; distance -1 = none. Sources that are filled add
@@ -141,11 +162,13 @@ std::vector<OracleNode> fill_slowly(const ScalarField& field, std::array<double,
   std::vector<OracleNode> sources(field.samples.size());
   for (std::size_t n = 0; n < sources.size(); ++n)
     if (!std::isnan(field.samples[n])) sources[n] = {field.samples[n], 0};
+  ScalarField inside({field.shape.inlines, field.shape.crosslines, 1});
+  for_each_node(inside.shape, [&](GridIndex trace) { inside.at(trace) = is_inside(field, trace.i, trace.j); });
   for (int pass = 0; pass < kPasses; ++pass) {
     const std::vector<OracleNode> before = sources;
     for_each_node(field.shape, [&](GridIndex node) {
       OracleNode& own = sources[field.index(node)];
-      if (own.distance < 0 && is_inside(field, node.i, node.j)) own = barycentre(before, field, node, steps);
+      if (own.distance < 0 && inside.at({node.i, node.j, 0}) == 1) own = barycentre(before, field, node, steps);
     });
   }
   for_each_node(field.shape, [&](GridIndex node) {

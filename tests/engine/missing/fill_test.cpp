@@ -106,6 +106,16 @@ TEST(FillMissing, LeavesWhatLiesOutsideTheSurveyPolygonMissing) {
   EXPECT_FLOAT_EQ(filled.at({10, 10, 3}), 23);
 }
 
+TEST(FillMissing, FillsLinesThatWereNotShotWhereTheOtherLinesAreInside) {
+  const ScalarField truth = test::plane({12, 10, 6}, 1, -2, 3, 0);
+  ScalarField field = test::without(truth, {{4, 0, 0}, {6, 9, 5}});
+  expect_near(test::fill(field), truth, 1e-4);
+  field = test::without(std::move(field), {{0, 7, 0}, {11, 7, 5}});
+  expect_near(test::fill(field), truth, 0.5);            // where the lines cross, distances are carried on
+  field = test::without(truth, {{0, 0, 0}, {2, 9, 5}});  // before the first inline: outside
+  EXPECT_EQ(count_missing(test::fill(field)), 3 * 10 * 6);
+}
+
 TEST(FillMissing, FillsValidTracesOnTheSurveysBorderFromTopToBottom) {
   ScalarField field(GridShape{3, 3, 8}, 4);
   field = test::without(std::move(field), {{0, 0, 0}, {0, 0, 2}});  // muted

@@ -37,6 +37,11 @@ inline ScalarField with_random_gaps(ScalarField field, Random& random) {
   for (std::int32_t i = 0; i < shape.inlines; ++i)
     for (std::int32_t j = 0; j < shape.crosslines; ++j)
       if (random.unit() < dead) field = without_trace(std::move(field), i, j);
+  if (random.unit() < 0.4) {  // lines that were not shot, whatever their number
+    const std::int32_t i = random.integer(0, shape.inlines - 1), j = random.integer(0, shape.crosslines - 1);
+    field = without(std::move(field), {{i, 0, 0}, {i, shape.crosslines - 1, shape.samples - 1}});
+    if (random.unit() < 0.5) field = without(std::move(field), {{0, j, 0}, {shape.inlines - 1, j, shape.samples - 1}});
+  }
   for (int box = 0; box < random.integer(0, 3); ++box) {
     GridBox gap;
     for (int axis = 0; axis < 3; ++axis) {

@@ -8,10 +8,9 @@
 #include "engine/base/vec3.h"
 #include "engine/missing/gap_box.h"
 #include "engine/missing/steered_paths.h"
+#include "engine/missing/trace_terms.h"
 
 namespace geosis {
-
-struct TraceWorkspace;  // scratch of the evaluation
 
 /// The bending energy of the plate whose lateral neighbours lie along the reflectors, as a quadratic form of the box's
 /// samples. Its terms are the six second differences of each node; those count that lie in the box, touch a wanted node
@@ -21,7 +20,6 @@ struct TraceWorkspace;  // scratch of the evaluation
 class SteeredEnergy {
  public:
   static constexpr std::size_t kSlack = 4;  ///< a cubic's weight of zero may reach over the end
-  static constexpr std::size_t kTerms = 6;
 
   /// Keeps references to state and paths.
   SteeredEnergy(std::span<const NodeState> state, const SteeredPaths& paths, const Vec3d& step_lengths);
@@ -38,15 +36,16 @@ class SteeredEnergy {
   };
 
   void find_terms();
-  template <bool kSquared>
-  void add_trace(const float* x, float* result, std::int32_t i, std::int32_t j, TraceWorkspace& work) const;
+  /// task(terms of the trace, aimed, i, j) for every trace that has terms.
+  template <class Task>
+  void for_each_trace(const Task& task) const;
 
   std::span<const NodeState> state_;
   const SteeredPaths& paths_;
   GridShape shape_;
-  std::array<float, kTerms> weight_;  // of each kind of term
-  std::vector<std::uint8_t> terms_;   // one bit a kind: whether it counts at the node
-  std::vector<Range> range_;          // one a trace
+  std::array<float, terms> weight_;  // of each kind of term
+  std::vector<std::uint8_t> terms_;  // one bit a kind: whether it counts at the node
+  std::vector<Range> range_;         // one a trace
 };
 
 }  // namespace geosis

@@ -42,23 +42,44 @@ std::vector<float> gradient_of(const SteeredEnergy& energy, const std::vector<fl
   return result;
 }
 
+void expect_is_the_plate_on_the_grid(const GapBox& gap) {
+  const SteeredPaths paths = follow_dips(dips_of(gap.samples.shape, 0, 0));
+  const auto found = gradient_of(SteeredEnergy(gap.state, paths, kSteps), with_slack(gap.samples.value));
+  std::vector<double> wanted;
+  for (std::size_t n = 0; n < gap.state.size(); ++n) {
+    if (gap.state[n] == NodeState::wanted) wanted.push_back(gap.samples.value[n]);
+  }
+  const auto expected = test::DensePlate(gap, kSteps).gradient(wanted);
+  std::size_t next = 0;
+  for (std::size_t n = 0; n < gap.state.size(); ++n) {
+    ASSERT_NEAR(found[n], gap.state[n] == NodeState::wanted ? expected[next++] : 0.0, 1e-4) << n;
+  }
+}
+
 TEST(SteeredEnergy, WithoutDipsIsThatOfThePlateOnTheGrid) {
   const std::uint64_t seed = test::test_seed(21);
   SCOPED_TRACE("seed " + std::to_string(seed));
   test::Random random(seed);
   for (const GridShape shape : {kShape, GridShape{1, 6, 9}, {5, 5, 3}, {3, 3, 1}, {2, 1, 2}}) {
-    const GapBox gap = random_gap(shape, random);
-    const SteeredPaths paths = follow_dips(dips_of(shape, 0, 0));
-    const auto found = gradient_of(SteeredEnergy(gap.state, paths, kSteps), with_slack(gap.samples.value));
-    std::vector<double> wanted;
-    for (std::size_t n = 0; n < gap.state.size(); ++n) {
-      if (gap.state[n] == NodeState::wanted) wanted.push_back(gap.samples.value[n]);
+    expect_is_the_plate_on_the_grid(random_gap(shape, random));
+  }
+}
+
+TEST(SteeredEnergy, ForgetsTheTraceBefore) {
+  const std::uint64_t seed = test::test_seed(23);
+  SCOPED_TRACE("seed " + std::to_string(seed));
+  test::Random random(seed);
+  for (int n = 0; n < 20; ++n) {
+    // Gaps that begin and end elsewhere on every trace.
+    GapBox gap = random_gap({6, 6, 16}, random);
+    for (int trace = 0; trace < 36; ++trace) {
+      const int first = random.integer(0, 15), last = random.integer(0, 15);
+      for (int k = 0; k < 16; ++k) {
+        gap.state[static_cast<std::size_t>(trace * 16 + k)] =
+            k >= first && k <= last ? NodeState::wanted : NodeState::known;
+      }
     }
-    const auto expected = test::DensePlate(gap, kSteps).gradient(wanted);
-    std::size_t next = 0;
-    for (std::size_t n = 0; n < gap.state.size(); ++n) {
-      ASSERT_NEAR(found[n], gap.state[n] == NodeState::wanted ? expected[next++] : 0.0, 1e-4) << n;
-    }
+    expect_is_the_plate_on_the_grid(gap);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/volume/brick_layout.h"
 
@@ -41,7 +42,7 @@ class NodeReader {
     if (start.k < 0 || start.k >= volume_.shape().samples) return {};
     const std::size_t number = layout_.number(brick_of(start));
     if (!volume_.summary(number).has_missing) return {};
-    const auto brick = volume_.brick(number);
+    const auto brick = held_brick(number, layout_.place(number).i);
     if (!brick) return brick.error();
     const int a = start.i - brick->first.i, b = start.j - brick->first.j, c = start.k - brick->first.k;
     const std::size_t offset = static_cast<std::size_t>((a * brick->extent.crosslines + b)) * brick->extent.samples + c;
@@ -50,6 +51,19 @@ class NodeReader {
       if (std::isnan(brick->samples[offset + n])) bits &= ~(std::uint64_t{1} << n);
     }
     return {};
+  }
+
+  // Rows come with rising i: the bricks of the present i are held, at most nine, since a filled volume puts a brick
+  // together each time it is asked.
+  Result<BrickView> held_brick(std::size_t number, std::int32_t place_i) {
+    if (place_i != held_i_) held_.clear();
+    held_i_ = place_i;
+    for (const auto& [known, view] : held_) {
+      if (known == number) return view;
+    }
+    auto brick = volume_.brick(number);
+    if (brick) held_.emplace_back(number, *brick);
+    return brick;
   }
 
   // A brick that holds the node: the one of which it is not the shared last layer, where there is a choice.
@@ -61,6 +75,8 @@ class NodeReader {
 
   const BrickedVolume& volume_;
   BrickLayout layout_;
+  std::int32_t held_i_ = -1;
+  std::vector<std::pair<std::size_t, BrickView>> held_;
 };
 
 /// Bits first .. last of a word, where both may lie outside it.

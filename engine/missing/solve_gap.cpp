@@ -1,13 +1,70 @@
 #include "engine/missing/solve_gap.h"
 
-namespace geosis {
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <utility>
 
-Result<GapMethod> make_gap_method(const BrickedVolume&, const FillOptions& options, Vec3d, int, Progress&) {
+#include "engine/missing/inverse_distance.h"
+#include "engine/missing/steered_plate.h"
+#include "engine/missing/thin_plate.h"
+
+namespace geosis {
+namespace {
+
+Error cancelled() {
+  return {ErrorCode::cancelled, "filling missing samples was cancelled"};
+}
+
+/// Nothing is filled with what no sample has: a plate can swing far beyond its rim.
+ThinPlateOptions clamped_to_samples(const BrickedVolume& volume) {
+  ThinPlateOptions options;
+  ValueRange range{std::numeric_limits<float>::max(), std::numeric_limits<float>::lowest()};
+  for (std::size_t brick = 0; brick < volume.brick_count(); ++brick) {
+    const BrickSummary summary = volume.summary(brick);
+    if (summary.all_missing) continue;
+    range = {std::min(range.min, summary.range.min), std::max(range.max, summary.range.max)};
+  }
+  options.low = range.min;
+  options.high = range.max;
+  return options;
+}
+
+GapMethod plate_method(const BrickedVolume& volume, FillSteering steer, Vec3d step_lengths) {
+  GapMethod method;
+  if (steer != FillSteering::off) method.margin = {kSteeringMarginTraces, kSteeringMarginTraces, kSteeringMarginSamples};
+  method.solve = [steer, step_lengths, options = clamped_to_samples(volume)](GapBox& gap,
+                                                                             Progress& progress) -> Result<void> {
+    if (wants_steering(gap, steer, progress)) {
+      fill_steered_plate(gap, step_lengths, options, progress);
+    } else {
+      fill_thin_plate(gap, step_lengths, options, progress);
+    }
+    if (progress.cancelled()) return cancelled();
+    return {};
+  };
+  return method;
+}
+
+Result<GapMethod> inverse_distance_method(const BrickedVolume& volume, Vec3d step_lengths, int threads,
+                                          Progress& progress) {
+  auto built = InverseDistanceFill::build(volume, step_lengths, threads, progress);
+  if (!built) return std::move(built).error();
+  GapMethod method;
+  method.solve = [fill = std::make_shared<const InverseDistanceFill>(*std::move(built))](
+                     GapBox& gap, Progress& unfinished) { return fill->fill(gap, unfinished); };
+  return method;
+}
+
+}  // namespace
+
+Result<GapMethod> make_gap_method(const BrickedVolume& volume, const FillOptions& options, Vec3d step_lengths,
+                                  int threads, Progress& progress) {
   switch (options.kernel) {
     case RbfKernel::polyharmonic:
-      return Error{ErrorCode::unsupported, "filling with the polyharmonic kernel"};
+      return plate_method(volume, options.steer, step_lengths);
     case RbfKernel::inverse_distance:
-      return Error{ErrorCode::unsupported, "filling with the inverse distance kernel"};
+      return inverse_distance_method(volume, step_lengths, threads, progress);
   }
   return Error{ErrorCode::internal, "filling with an unknown kernel"};
 }

@@ -1,19 +1,11 @@
 #pragma once
 
-#include <limits>
-
 #include "engine/base/progress.h"
 #include "engine/base/vec3.h"
 #include "engine/missing/gap_box.h"
+#include "engine/missing/thin_plate_options.h"
 
 namespace geosis {
-
-struct ThinPlateOptions {
-  double tolerance = 1e-3;  ///< residual, as a share of that of a gap filled with the mean of the samples round it
-  /// What the result is clamped to: the range of the valid samples.
-  float low = std::numeric_limits<float>::lowest();
-  float high = std::numeric_limits<float>::max();
-};
 
 /// Fills the wanted nodes of a box as a thin plate that is clamped at the known ones: the values of least bending
 ///

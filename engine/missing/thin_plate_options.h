@@ -1,10 +1,14 @@
 #pragma once
 
+#include <limits>
+
 namespace geosis {
 
 struct ThinPlateOptions {
-  double tolerance = 1e-3;  ///< of the residual, beside what it was at the start
-  float low = 0, high = 0;  ///< filled values are cut to [low, high]
+  double tolerance = 1e-3;  ///< residual, as a share of that of a gap filled with the mean of the samples round it
+  /// What the result is clamped to: the range of the valid samples.
+  float low = std::numeric_limits<float>::lowest();
+  float high = std::numeric_limits<float>::max();
 };
 
 }  // namespace geosis

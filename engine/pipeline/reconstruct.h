@@ -37,7 +37,7 @@ struct AttributeChoice {
 
 /// Which bodies to keep: those that hold a seed, of these the ones with enough volume, of these the largest.
 struct BodyChoice {
-  std::vector<GridIndex> seeds;  ///< nodes; none = any body
+  std::vector<GridIndex> seeds = {};  ///< nodes; none = any body
   double min_voxels = 0;
   std::optional<std::uint32_t> largest = std::nullopt;
 
@@ -47,12 +47,12 @@ struct BodyChoice {
 
 /// The request's part that the engine computes from; documents/ turns JSON into it.
 struct ReconstructOptions {
-  IsoRange range;
+  IsoRange range{};
   BodyMode mode = BodyMode::exact;
   bool cap = true;
   FillOptions fill = {};                         ///< of missing samples, before anything else
   std::optional<GridBox> region = std::nullopt;  ///< unset = the whole volume
-  BodyChoice bodies = {};
+  BodyChoice bodies = BodyChoice();
   std::vector<double> ratios = {1, 0.25, 0.0625, 0.015625, 0.00390625};
   bool index_space = false;                         ///< `space`: "index" instead of "world"
   std::optional<double> velocity = std::nullopt;    ///< m/s: turns two-way time in ms into depth in m

@@ -17,7 +17,7 @@ struct ManifestUrls {
   /// The whole level in one file; nullopt when there is no such file.
   std::function<std::optional<std::string>(std::size_t level, std::size_t parts)> level;
   std::function<std::string(std::size_t level, std::size_t part, std::size_t parts)> part;
-  std::string bodies;  ///< the document of the bodies
+  std::string bodies = "bodies";  ///< the document of the bodies
 };
 
 /// Whether lengths, areas and volumes mean something in the requested space: two axes in metres and one in milliseconds

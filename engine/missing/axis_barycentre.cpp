@@ -117,24 +117,32 @@ std::uint8_t reliability_of(double distance) {
   return static_cast<std::uint8_t>(254 / (1 + ratio * ratio * ratio) + 0.5);
 }
 
-/// What the nodes of a row met, [axis][before, after][k].
+/// What the nodes of a row met. Values and distances are left unset where nothing was met: there are many rows, and
+/// most have few nodes.
 struct AxisBarycentre::Met {
-  std::array<std::array<Row, 2>, 3> found;
-  std::array<std::array<std::uint64_t, 2>, 3> nodes{};  ///< for which `found` holds
+  struct Side {
+    double value[kBrickSamples], distance[kBrickSamples];
+    std::uint64_t nodes = 0;  ///< for which they hold
+  };
+  Side side[3][2];  ///< [axis][before, after]
 
   void add(int axis, int way, int k, Estimate estimate) {
-    const std::size_t side = way < 0 ? 0 : 1;
-    found[static_cast<std::size_t>(axis)][side][static_cast<std::size_t>(k)] = estimate;
-    nodes[static_cast<std::size_t>(axis)][side] |= std::uint64_t{1} << k;
+    Side& own = side[axis][way < 0 ? 0 : 1];
+    own.value[k] = estimate.value;
+    own.distance[k] = estimate.distance;
+    own.nodes |= std::uint64_t{1} << k;
   }
   std::uint64_t any() const {
-    return nodes[0][0] | nodes[0][1] | nodes[1][0] | nodes[1][1] | nodes[2][0] | nodes[2][1];
+    std::uint64_t nodes = 0;
+    for (const auto& axis : side) nodes |= axis[0].nodes | axis[1].nodes;
+    return nodes;
   }
   Estimate combined(int k) const {
     std::array<std::array<Estimate, 2>, 3> met;
     for (std::size_t axis = 0; axis < 3; ++axis)
-      for (std::size_t side = 0; side < 2; ++side)
-        if ((nodes[axis][side] >> k & 1) != 0) met[axis][side] = found[axis][side][static_cast<std::size_t>(k)];
+      for (std::size_t way = 0; way < 2; ++way)
+        if (const Side& own = side[axis][way]; (own.nodes >> k & 1) != 0)
+          met[axis][way] = {own.value[k], own.distance[k]};
     return combine(met);
   }
 };

@@ -105,6 +105,7 @@ class Filling {
     const BitLines fillable = method && options_.max_distance ? nodes_ : BitLines();
     if (options_.max_distance)
       drop_beyond(*options_.max_distance, volume_.shape(), scan_.valid, nodes_, threads_, progress_);
+    if (progress_.cancelled()) return cancelled();
     auto writer = FillWriter::create(volume_, count_records(), path);
     if (!writer) return std::move(writer).error();
     write_linear(*writer, method ? kStarted : kLinear);

@@ -48,8 +48,16 @@ void add_differences(const float* from, const float* to, std::int32_t n, PairSum
   sum.pairs += static_cast<std::int64_t>(total(row.count));
 }
 
+/// One trace in `share`. Any good mixing of bits will do.
+bool is_chosen(std::int32_t i, std::int32_t j, std::uint32_t share) {
+  std::uint64_t mixed = static_cast<std::uint64_t>(i) << 32 | static_cast<std::uint32_t>(j);
+  mixed = (mixed ^ mixed >> 33) * 0xFF51AFD7ED558CCDu;
+  mixed = (mixed ^ mixed >> 33) * 0xC4CEB9FE1A85EC53u;
+  return (mixed >> 32) % share == 0;
+}
+
 template <bool kMissing>
-SampleSums sum_brick(const BrickView& brick, std::array<bool, 3> last, int lag, double pivot) {
+SampleSums sum_brick(const BrickView& brick, std::array<bool, 3> last, int lag, double pivot, std::uint32_t share) {
   SampleSums sums;
   const GridShape& extent = brick.extent;
   const GridShape own{extent.inlines - !last[0], extent.crosslines - !last[1], extent.samples - !last[2]};
@@ -57,6 +65,7 @@ SampleSums sum_brick(const BrickView& brick, std::array<bool, 3> last, int lag, 
   const std::ptrdiff_t to_inline = to_crossline * extent.crosslines;
   for (std::int32_t a = 0; a < own.inlines; ++a) {
     for (std::int32_t b = 0; b < own.crosslines; ++b) {
+      if (share > 1 && !is_chosen(brick.first.i + a, brick.first.j + b, share)) continue;
       const float* row = brick.samples + (std::ptrdiff_t{a} * extent.crosslines + b) * extent.samples;
       const RowSums values = sum_row<kMissing>(own.samples, [=](std::int32_t k) { return double{row[k]} - pivot; });
       sums.sum += total(values.sum);
@@ -88,8 +97,10 @@ SampleSums& SampleSums::operator+=(const SampleSums& other) {
   return *this;
 }
 
-SampleSums sum_samples(const BrickView& brick, std::array<bool, 3> last, bool has_missing, int lag, double pivot) {
-  return has_missing ? sum_brick<true>(brick, last, lag, pivot) : sum_brick<false>(brick, last, lag, pivot);
+SampleSums sum_samples(const BrickView& brick, std::array<bool, 3> last, bool has_missing, int lag, double pivot,
+                       std::uint32_t row_share) {
+  return has_missing ? sum_brick<true>(brick, last, lag, pivot, row_share)
+                     : sum_brick<false>(brick, last, lag, pivot, row_share);
 }
 
 Vec3d step_lengths(const SampleSums& neighbours, const SampleSums& lag_two) {

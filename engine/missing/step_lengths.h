@@ -26,10 +26,13 @@ struct SampleSums {
 /// The sums of one brick. Every node and every pair of the volume is counted in one brick only, although bricks share
 /// layers; of the pairs with lag 2, those that no brick holds whole are left out.
 ///
+/// row_share     of the brick's traces, one in so many counts, chosen by a hash of its place: whatever the pattern in
+///               which traces are missing, the choice is not in step with it. 1 = all.
 /// last          whether the brick is the last one of each axis, which owns its last layer
 /// has_missing   false promises that all samples are valid
 /// cost          one read of the brick
-SampleSums sum_samples(const BrickView& brick, std::array<bool, 3> last, bool has_missing, int lag, double pivot);
+SampleSums sum_samples(const BrickView& brick, std::array<bool, 3> last, bool has_missing, int lag, double pivot,
+                       std::uint32_t row_share);
 
 /// How much the field changes from a node to the next one on each axis: sqrt(mean squared difference / twice the
 /// variance), so that distances on different axes can be compared. Between 1/20 of the largest and the largest.

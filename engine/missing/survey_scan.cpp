@@ -17,6 +17,8 @@ namespace geosis {
 namespace {
 
 constexpr double kShare = 0.3;  ///< of the stage
+// Step lengths of more traces than this are taken from one in four: tens of thousands are plenty.
+constexpr std::size_t kTracesForAll = 100'000;
 
 double middle_of_range(const BrickedVolume& volume) {
   ValueRange all{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
@@ -55,6 +57,8 @@ class Scanner {
         scan_(scan),
         layout_(scan.views.layout()),
         pivot_(middle_of_range(volume)),
+        row_share_(static_cast<std::size_t>(layout_.shape().inlines) * layout_.shape().crosslines > kTracesForAll ? 4
+                                                                                                                  : 1),
         sums_(layout_.brick_count()) {}
 
   Result<void> read_column(std::size_t column, const FillShare& share) {
@@ -85,7 +89,7 @@ class Scanner {
     const GridShape grid = layout_.grid();
     return sum_samples(scan_.views.view(brick),
                        {place.i + 1 == grid.inlines, place.j + 1 == grid.crosslines, place.k + 1 == grid.samples},
-                       volume_.summary(brick).has_missing, lag, pivot_);
+                       volume_.summary(brick).has_missing, lag, pivot_, row_share_);
   }
   void mark_valid(std::size_t brick) {
     const BrickView& view = scan_.views.view(brick);
@@ -108,6 +112,7 @@ class Scanner {
   SurveyScan& scan_;
   const BrickLayout& layout_;
   double pivot_;
+  std::uint32_t row_share_;
   std::vector<SampleSums> sums_;
 };
 

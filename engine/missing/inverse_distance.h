@@ -29,7 +29,7 @@ class InverseDistanceFill {
   /// value when the volume has no valid sample. Any thread may call it.
   ///
   /// errors  malformed_input: a damaged brick.  cancelled: some nodes are filled.
-  /// cost    about 6 us per wanted node; memory: 1 MiB or so.
+  /// cost    about 4 us per wanted node where many lie together, 10 us where 1 % are missing; memory: 4 MiB or so.
   Result<void> fill(GapBox& gap, const Progress& progress) const;
 
  private:

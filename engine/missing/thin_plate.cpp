@@ -27,7 +27,7 @@ Vec3d plate_weights(const Vec3d& step_lengths) {
 /// A gap of one node has one equation.
 void fill_single(GapBox& gap, const std::vector<PlateNode>& nodes, const ThinPlateOptions& options) {
   PlateRows rows({1, 1, 1});
-  const auto& strides = PlateNeighbours(gap).strides();
+  const auto strides = PlateNeighbours(gap).strides();
   for (const PlateNode& node : nodes) {
     const PlateRow& row = rows[rows.number(node.available)];
     double pull = 0;

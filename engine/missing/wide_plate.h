@@ -21,7 +21,7 @@ struct WidePlateEffort {
 ///
 /// nodes    all nodes of the gap.
 /// weights  c_a of the energy, the largest 1.
-/// cost     10 iterations for a cube of 20^3 nodes, 27 for 100^3, about 25 ns per node of its bounding box and
+/// cost     8 iterations for a cube of 20^3 nodes, 21 for 100^3, about 35 ns per node of its bounding box and
 /// iteration;
 ///          memory: 41 bytes per node of the bounding box with two nodes round it, 4 per node of the gap.
 /// source   Glowinski and Pironneau 1979 (the biharmonic problem by two Poisson problems).

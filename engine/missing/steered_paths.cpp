@@ -1,10 +1,13 @@
 #include "engine/missing/steered_paths.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace geosis {
 namespace {
+
+constexpr double kLongestToShortest = 20;  // of the steps
 
 std::size_t trace_start(GridShape shape, std::int32_t i, std::int32_t j) {
   return (static_cast<std::size_t>(i) * shape.crosslines + j) * static_cast<std::size_t>(shape.samples);
@@ -119,6 +122,35 @@ class Barycentre {
   float pairs_ = 0, pair_weight_ = 0, lonely_ = 0, lonely_weight_ = 0;
 };
 
+/// How much the samples of neighbouring traces differ along the dips, beside how much they do on the same level: the
+/// ratio of the root mean squares, at most 1.
+double share_along_dips(std::span<const float> value, std::span<const NodeState> state, const SteeredPaths& paths,
+                        Neighbour towards) {
+  const GridShape shape = paths.shape;
+  const TraceStep step = kTraceSteps[towards];
+  double along = 0, level = 0;
+  for (std::int32_t i = 0; i < shape.inlines; ++i) {
+    for (std::int32_t j = 0; j < shape.crosslines; ++j) {
+      if (!has_trace(shape, i + step.inlines, j + step.crosslines)) continue;
+      const std::size_t here = trace_start(shape, i, j);
+      const std::size_t there = trace_start(shape, i + step.inlines, j + step.crosslines);
+      for (std::int32_t k = 0; k < shape.samples; ++k) {
+        const float depth = paths.depth[towards][here + k];
+        const auto above = static_cast<std::size_t>(depth);
+        const std::size_t below = std::min(above + 1, static_cast<std::size_t>(shape.samples - 1));
+        const bool is_known = state[here + k] == NodeState::known && state[there + k] == NodeState::known &&
+                              state[there + above] == NodeState::known && state[there + below] == NodeState::known;
+        if (!is_known) continue;
+        const double steered = double{sample_at(&value[there], shape.samples, depth)} - value[here + k];
+        const double straight = double{value[there + k]} - value[here + k];
+        along += steered * steered;
+        level += straight * straight;
+      }
+    }
+  }
+  return level > 0 ? std::min(1.0, std::sqrt(along / level)) : 1;
+}
+
 }  // namespace
 
 float sample_at(const float* trace, std::int32_t count, float depth) {
@@ -143,6 +175,17 @@ SteeredPaths follow_dips(const Dips& dips) {
   follow_links(paths, previous_crossline, dips.to_next_crossline);
   follow_corners(paths);
   return paths;
+}
+
+Vec3d steps_along_dips(std::span<const float> value, std::span<const NodeState> state, const SteeredPaths& paths,
+                       const Vec3d& step_lengths) {
+  Vec3d steps = step_lengths;
+  const double inlines = share_along_dips(value, state, paths, next_inline);
+  const double crosslines = share_along_dips(value, state, paths, next_crossline);
+  const double least = std::max({steps.x, steps.y, steps.z}) / kLongestToShortest;
+  steps.x = std::max(steps.x * inlines, std::min(steps.x, least));
+  steps.y = std::max(steps.y * crosslines, std::min(steps.y, least));
+  return steps;
 }
 
 void start_along_dips(std::span<float> value, std::span<const NodeState> state, const SteeredPaths& paths,

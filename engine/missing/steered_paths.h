@@ -35,6 +35,13 @@ SteeredPaths follow_dips(const Dips& dips);
 /// Linear interpolation in a trace of `count` samples; beyond its ends, the end's sample.
 float sample_at(const float* trace, std::int32_t count, float depth);
 
+/// The step lengths for neighbours along the reflectors: the lateral ones, less by as much as the samples there differ
+/// less than on the same level, over all links between known nodes; at least a twentieth of the longest.
+///
+/// value    of the box, finite.
+Vec3d steps_along_dips(std::span<const float> value, std::span<const NodeState> state, const SteeredPaths& paths,
+                       const Vec3d& step_lengths);
+
 /// Values to start from: for each wanted node the barycentre of the known samples that walks along the reflectors meet
 /// in the four lateral directions, linear between two that face each other. Nodes that meet none keep theirs.
 ///

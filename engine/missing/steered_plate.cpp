@@ -69,9 +69,10 @@ class SteeredFill {
     *dips = {};
     std::vector<float>& x = box_.value;
     for (float& sample : x) sample = std::isfinite(sample) ? sample : 0;
-    if (from_start) start_along_dips(x, gap_.state, paths, step_lengths_);
+    const Vec3d steps = steps_along_dips(x, gap_.state, paths, step_lengths_);
+    if (from_start) start_along_dips(x, gap_.state, paths, steps);
     x.resize(x.size() + SteeredEnergy::kSlack, 0.0f);
-    const bool is_done = minimise(SteeredEnergy(gap_.state, paths, step_lengths_), x, tolerance);
+    const bool is_done = minimise(SteeredEnergy(gap_.state, paths, steps), x, tolerance);
     x.resize(gap_.state.size());
     for (std::size_t n = 0; n < x.size(); ++n) {
       if (gap_.state[n] == NodeState::absent) x[n] = std::numeric_limits<float>::quiet_NaN();

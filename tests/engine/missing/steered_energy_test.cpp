@@ -148,5 +148,39 @@ TEST(FollowDips, GoesHalfADipUpAndDownFromTheMiddle) {
   }
 }
 
+/// A wave along depth on planes of that dip, all of it known.
+GapBox wave_under(GridShape shape, double per_inline) {
+  GapBox gap{{{}, shape, {}}, {}};
+  for (int i = 0; i < shape.inlines; ++i) {
+    for (int j = 0; j < shape.crosslines; ++j) {
+      for (int k = 0; k < shape.samples; ++k) {
+        gap.samples.value.push_back(static_cast<float>(std::sin((k - per_inline * i) / 2)));
+        gap.state.push_back(NodeState::known);
+      }
+    }
+  }
+  return gap;
+}
+
+TEST(StepsAlongDips, ShrinkByWhatTheDipsExplain) {
+  const GridShape shape = {6, 5, 60};
+  const Vec3d steps = {0.3, 0.2, 0.35};
+  const GapBox flat = wave_under(shape, 0), dipping = wave_under(shape, 0.5);
+  EXPECT_EQ(steps_along_dips(flat.samples.value, flat.state, follow_dips(dips_of(shape, 0, 0)), steps), steps);
+  const Vec3d found =
+      steps_along_dips(dipping.samples.value, dipping.state, follow_dips(dips_of(shape, 0.5f, 0)), steps);
+  EXPECT_GE(found.x, 0.35 / 20);
+  EXPECT_LT(found.x, 0.1);
+  EXPECT_EQ(found.y, steps.y);
+  EXPECT_EQ(found.z, steps.z);
+}
+
+TEST(StepsAlongDips, DoNotGrowUnderWrongDips) {
+  const GridShape shape = {6, 5, 60};
+  const Vec3d steps = {0.3, 0.2, 0.35};
+  const GapBox dipping = wave_under(shape, 0.5);
+  EXPECT_EQ(steps_along_dips(dipping.samples.value, dipping.state, follow_dips(dips_of(shape, -2, 1)), steps), steps);
+}
+
 }  // namespace
 }  // namespace geosis

@@ -1,7 +1,5 @@
 #include "server/app/level_export.h"
 
-#include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <limits>
 #include <vector>
@@ -29,15 +27,8 @@ Result<DecodedLevel> read_level(const Json& entry, int level, const PartReader& 
   return decode_level({parts.begin(), parts.end()}, threads);
 }
 
-/// Bits that hold every position of the mesh.
-int position_bits_of(const IndexedMesh& mesh) {
-  float longest = 0;
-  for (const Vec3f& p : mesh.positions) longest = std::max({longest, p.x, p.y, p.z});
-  return position_bits_for(static_cast<std::int32_t>(std::ceil(longest)) + 1);
-}
-
 Result<void> write_drc(std::ostream& out, const DecodedLevel& level, const std::array<double, 16>& transform) {
-  const EncodeOptions options{.position_bits = position_bits_of(level.mesh),
+  const EncodeOptions options{.position_bits = position_bits_for(level.mesh),
                               .max_part_triangles = std::numeric_limits<std::int32_t>::max(),
                               .transform = transform};
   const auto encoded = encode_level(level.mesh, level.attributes, options);

@@ -168,7 +168,7 @@ Command add_reconstruct_command(CLI::App& app) {
       ->type_name("I0:I1,J0:J1,K0:K1");
   command.add_option("--space", arguments->space, "world (default) or index")->type_name("SPACE");
   command.add_option("--out", arguments->out, "folder for manifest.json and the levels")->capture_default_str();
-  command.add_option("--formats", arguments->formats, "files of each level: drc (always written), ply, obj")
+  command.add_option("--formats", arguments->formats, "files of each level: drc (always written), glb, ply, obj, stl")
       ->capture_default_str();
   command.add_option("--threads", arguments->threads, "threads to use")
       ->check(CLI::Range(1, 1024))

@@ -63,6 +63,11 @@ Result<void> check_triangles(const std::vector<Triangle>& triangles, std::size_t
   return {};
 }
 
+/// To within the rounding of float32; NaN fails the comparison.
+bool is_unit(Vec3f normal) {
+  return std::abs(dot(normal, normal) - 1) < 1e-3f;
+}
+
 Result<void> check_attributes(const VertexAttributes& attributes, std::size_t vertices) {
   auto fit = visit_arrays([&](const char* name, auto array) -> Result<void> {
     const std::size_t values = (attributes.*array).size();
@@ -75,6 +80,11 @@ Result<void> check_attributes(const VertexAttributes& attributes, std::size_t ve
     if (attributes.body[v] <= kMaxBody) continue;
     return invalid("vertex " + std::to_string(v) + ": body " + std::to_string(attributes.body[v]) + "; at most " +
                    std::to_string(kMaxBody));
+  }
+  for (std::size_t v = 0; v < attributes.normal.size(); ++v) {
+    if (is_unit(attributes.normal[v])) continue;
+    return invalid("vertex " + std::to_string(v) + ": the normal's length is " +
+                   std::to_string(norm(attributes.normal[v])) + "; expected 1");
   }
   return {};
 }

@@ -7,7 +7,7 @@ namespace geosis {
 
 /// Everything that Draco would throw on, crash on or change silently, refused by name (see encode_level's errors).
 ///
-/// cost   one pass over positions, triangles and body ids, about 1 % of encoding.
+/// cost   one pass over positions, triangles and attributes, about 1 % of encoding.
 Result<void> check_level(const IndexedMesh& mesh, const VertexAttributes& attributes, const EncodeOptions& options);
 
 }  // namespace geosis

@@ -25,17 +25,17 @@ Error malformed(std::string message) {
 
 template <class T>
 int add_attribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type, std::int8_t components,
-                  draco::DataType data_type, const std::vector<T>& values) {
+                  draco::DataType data_type, std::span<const T> values) {
   draco::GeometryAttribute attribute;
   attribute.Init(type, nullptr, components, data_type, false, sizeof(T), 0);
   const int id = mesh.AddAttribute(attribute, true, static_cast<std::uint32_t>(values.size()));
-  mesh.attribute(id)->buffer()->Write(0, values.data(), values.size() * sizeof(T));
+  mesh.attribute(id)->buffer()->Write(0, values.data(), values.size_bytes());
   return id;
 }
 
-int add_positions(draco::Mesh& mesh, const std::vector<Vec3f>& positions) {
-  static_assert(sizeof(Vec3f) == 3 * sizeof(float), "positions are written to Draco as they lie in memory");
-  return add_attribute(mesh, draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32, positions);
+int add_vectors(draco::Mesh& mesh, draco::GeometryAttribute::Type type, std::span<const Vec3f> vectors) {
+  static_assert(sizeof(Vec3f) == 3 * sizeof(float), "vectors are written to Draco as they lie in memory");
+  return add_attribute(mesh, type, 3, draco::DT_FLOAT32, vectors);
 }
 
 template <class T>
@@ -43,29 +43,22 @@ constexpr draco::DataType kDataType = draco::DT_INVALID;
 template <>
 constexpr draco::DataType kDataType<std::uint8_t> = draco::DT_UINT8;
 template <>
+constexpr draco::DataType kDataType<std::uint16_t> = draco::DT_UINT16;
+template <>
 constexpr draco::DataType kDataType<std::uint32_t> = draco::DT_UINT32;
 template <>
 constexpr draco::DataType kDataType<float> = draco::DT_FLOAT32;
 
-/// One number a vertex under a name; nothing when there are no values. Draco predicts integers and copies float32 bit
-/// by bit, for it is not asked to quantise them.
-template <class T>
-draco::Status add_named(draco::Mesh& mesh, draco::ExpertEncoder& encoder, const char* name,
-                        const std::vector<T>& values) {
-  if (values.empty()) return draco::OkStatus();
-  const int id = add_attribute(mesh, draco::GeometryAttribute::GENERIC, 1, kDataType<T>, values);
+draco::Status add_named(draco::Mesh& mesh, draco::ExpertEncoder& encoder, const NamedNumbers& named) {
+  const int id = std::visit(
+      [&]<class T>(std::span<const T> numbers) {
+        return add_attribute(mesh, draco::GeometryAttribute::GENERIC, 1, kDataType<T>, numbers);
+      },
+      named.numbers);
   auto metadata = std::make_unique<draco::AttributeMetadata>();
-  metadata->AddEntryString(kNameEntry, name);
+  metadata->AddEntryString(kNameEntry, named.name);
   mesh.AddAttributeMetadata(id, std::move(metadata));
   return encoder.SetAttributePredictionScheme(id, draco::PREDICTION_DIFFERENCE);
-}
-
-draco::Status add_everything_named(draco::Mesh& mesh, draco::ExpertEncoder& encoder, const MeshPart& part) {
-  draco::Status status = add_named(mesh, encoder, kSeamName, part.seams);
-  for_each_array([&](const char* name, auto array) {
-    if (status.ok()) status = add_named(mesh, encoder, name, part.attributes.*array);
-  });
-  return status;
 }
 
 void add_triangles(draco::Mesh& mesh, const std::vector<Triangle>& triangles) {
@@ -93,12 +86,13 @@ void quantise_on_lattice(draco::ExpertEncoder& encoder, int position, int bits) 
                                            static_cast<float>((1 << bits) - 1) * kLatticeStep);
 }
 
-Result<EncodedPart> encode_with_draco(const MeshPart& part, const EncodeOptions& options) {
+Result<std::vector<std::byte>> encode_with_draco(const IndexedMesh& level, const std::vector<NamedNumbers>& named,
+                                                 const std::vector<Vec3f>& normals, const EncodeOptions& options) {
   draco::Mesh mesh;
-  mesh.set_num_points(static_cast<std::uint32_t>(part.mesh.positions.size()));
+  mesh.set_num_points(static_cast<std::uint32_t>(level.positions.size()));
   add_transform(mesh, options.transform);
-  const int position = add_positions(mesh, part.mesh.positions);
-  add_triangles(mesh, part.mesh.triangles);
+  const int position = add_vectors(mesh, draco::GeometryAttribute::POSITION, level.positions);
+  add_triangles(mesh, level.triangles);
 
   draco::ExpertEncoder encoder(mesh);
   encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
@@ -107,12 +101,17 @@ Result<EncodedPart> encode_with_draco(const MeshPart& part, const EncodeOptions&
   encoder.options().SetGlobalBool("split_mesh_on_seams", true);
   quantise_on_lattice(encoder, position, options.position_bits);
   draco::Status status = encoder.SetAttributePredictionScheme(position, draco::PREDICTION_DIFFERENCE);
-  if (status.ok()) status = add_everything_named(mesh, encoder, part);
+  for (const NamedNumbers& numbers : named) {
+    if (status.ok()) status = add_named(mesh, encoder, numbers);
+  }
+  if (!normals.empty()) {
+    encoder.SetAttributeQuantization(add_vectors(mesh, draco::GeometryAttribute::NORMAL, normals), kNormalBits);
+  }
   draco::EncoderBuffer buffer;
   if (status.ok()) status = encoder.EncodeToBuffer(&buffer);
   if (!status.ok()) return Error{ErrorCode::internal, "Draco cannot encode: " + status.error_msg_string()};
   const auto bytes = std::as_bytes(std::span(buffer.data(), buffer.size()));
-  return EncodedPart{{bytes.begin(), bytes.end()}, static_cast<std::int64_t>(part.mesh.triangles.size())};
+  return std::vector<std::byte>(bytes.begin(), bytes.end());
 }
 
 /// The attribute's value at each point; Draco shares values between points when it likes.
@@ -143,6 +142,15 @@ Result<std::vector<Vec3f>> read_positions(const draco::Mesh& mesh) {
     }
   }
   return positions;
+}
+
+Result<std::vector<Vec3f>> read_normals(const draco::Mesh& mesh) {
+  const draco::PointAttribute* attribute = mesh.GetNamedAttribute(draco::GeometryAttribute::NORMAL);
+  if (attribute == nullptr) return std::vector<Vec3f>{};
+  if (!holds(attribute, 3, draco::DT_FLOAT32, sizeof(Vec3f))) {
+    return malformed("the Draco mesh has normals that are not three float32");
+  }
+  return read_attribute<Vec3f>(*attribute, mesh.num_points());
 }
 
 /// Leaves the values empty when the mesh has nothing of that name.
@@ -188,21 +196,36 @@ Result<MeshPart> decode_with_draco(std::span<const std::byte> bytes) {
   if (!triangles) return std::move(triangles).error();
   MeshPart part{{*std::move(positions), *std::move(triangles)}, {}, {}};
   if (auto read = read_named(mesh, kSeamName, part.seams); !read) return std::move(read).error();
-  auto read = visit_arrays([&](const char* name, auto array) {  //
+  auto read = visit_numbers([&](const char* name, auto array) {  //
     return read_named(mesh, name, part.attributes.*array);
   });
   if (!read) return std::move(read).error();
+  auto normals = read_normals(mesh);
+  if (!normals) return std::move(normals).error();
+  part.attributes.normal = *std::move(normals);
   return part;
 }
 
 }  // namespace
 
-Result<EncodedPart> encode_part(const MeshPart& part, const EncodeOptions& options) {
+Result<std::vector<std::byte>> encode_mesh(const IndexedMesh& mesh, const std::vector<NamedNumbers>& named,
+                                           const std::vector<Vec3f>& normals, const EncodeOptions& options) {
   try {
-    return encode_with_draco(part, options);
+    return encode_with_draco(mesh, named, normals, options);
   } catch (const std::exception& failure) {
     return Error{ErrorCode::internal, std::string("Draco cannot encode: ") + failure.what()};
   }
+}
+
+Result<EncodedPart> encode_part(const MeshPart& part, const EncodeOptions& options) {
+  std::vector<NamedNumbers> named;
+  if (!part.seams.empty()) named.push_back({kSeamName, std::span(part.seams)});
+  for_each_number([&](const char* name, auto array) {
+    if (!(part.attributes.*array).empty()) named.push_back({name, std::span(part.attributes.*array)});
+  });
+  auto bytes = encode_mesh(part.mesh, named, part.attributes.normal, options);
+  if (!bytes) return std::move(bytes).error();
+  return EncodedPart{*std::move(bytes), static_cast<std::int64_t>(part.mesh.triangles.size())};
 }
 
 Result<MeshPart> decode_part(std::span<const std::byte> bytes) {

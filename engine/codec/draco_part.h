@@ -1,13 +1,34 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <string>
+#include <variant>
+#include <vector>
 
 #include "engine/base/result.h"
 #include "engine/codec/level_codec.h"
 #include "engine/codec/mesh_part.h"
 
 namespace geosis {
+
+/// One number a vertex, stored under a metadata name. Draco predicts integers and copies float32 bit by bit, for it is
+/// not asked to quantise them.
+struct NamedNumbers {
+  std::string name;
+  std::variant<std::span<const std::uint8_t>, std::span<const std::uint16_t>, std::span<const std::uint32_t>,
+               std::span<const float>>
+      numbers;
+};
+
+/// A Draco file of the mesh: attribute 0 is the position, 1, 2, ... are the named numbers, then the normals when there
+/// are any.
+///
+/// mesh     checked by check_level: Draco throws on NaN and reads past its arrays on a bad index.
+/// errors   internal: Draco failed.
+Result<std::vector<std::byte>> encode_mesh(const IndexedMesh& mesh, const std::vector<NamedNumbers>& named,
+                                           const std::vector<Vec3f>& normals, const EncodeOptions& options);
 
 /// One part as a Draco file; its form is described at EncodedPart.
 ///

@@ -1,6 +1,8 @@
 #include "engine/codec/level_codec.h"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -45,6 +47,12 @@ int position_bits_for(std::int32_t longest_axis_samples) {
   return last_node < 1
              ? 1
              : static_cast<int>(std::bit_width(static_cast<std::uint64_t>(last_node * kLatticeStepsPerVoxel)));
+}
+
+int position_bits_for(const IndexedMesh& mesh) {
+  float longest = 0;
+  for (const Vec3f& p : mesh.positions) longest = std::max({longest, p.x, p.y, p.z});
+  return position_bits_for(static_cast<std::int32_t>(std::ceil(longest)) + 1);
 }
 
 Result<EncodedLevel> encode_level(const IndexedMesh& mesh, const VertexAttributes& attributes,

@@ -21,6 +21,8 @@ inline constexpr int kMaxPositionBits = 23;
 /// the sums wrap around and other ids come back, without an error.
 inline constexpr std::uint32_t kMaxBody = (1u << 30) - 1;
 
+inline constexpr int kNormalBits = 10;
+
 struct EncodeOptions {
   int position_bits = 14;  ///< lattice positions lie in [0, 2^bits - 1] steps; see position_bits_for
   std::int32_t max_part_triangles = 100'000;
@@ -39,6 +41,8 @@ struct EncodeOptions {
 ///             several fans is stored once a fan, each time with its id.
 ///             GENERIC, attribute metadata "name" = "reliability" (1 x uint8), "body" (1 x uint32) and "value"
 ///             (1 x float32, bit for bit, NaN included), each only when the level has it.
+///             NORMAL, 3 x float32, only when the level has normals: in kNormalBits octahedral bits, so that directions
+///             change by up to a quarter of a degree; the same at a seam's vertex in all its parts.
 /// Metadata    "transform": the 16 numbers of EncodeOptions::transform as little-endian float64 (a double array;
 ///             readers without one read 32 int32 and reinterpret them).
 struct EncodedPart {
@@ -59,11 +63,14 @@ struct DecodedLevel {
 /// position, (samples - 1) * 64 steps, included.
 int position_bits_for(std::int32_t longest_axis_samples);
 
+/// Bits that hold every position of the mesh.
+int position_bits_for(const IndexedMesh& mesh);
+
 /// The level as Draco files of at most max_part_triangles each, cut along the order of the triangles (Morton bricks).
 ///
 /// mesh     manifold with or without boundary, oriented (anything else Draco cuts open without a word); positions on
 ///          the 1/64 lattice, 0 <= position < 2^(bits - 6). Vertices that no triangle uses are left out.
-/// attributes  each array empty or of the mesh's number of vertices; body ids up to kMaxBody.
+/// attributes  each array empty or of the mesh's number of vertices; body ids up to kMaxBody, normals of length 1.
 /// returns  parts of nearly equal size. The same bytes for any number of threads.
 /// errors   invalid_argument: a position that is not finite, off the lattice or out of range, a bad index, no
 ///          triangles, a triangle with a repeated vertex, attributes that do not fit, options out of range.  internal:

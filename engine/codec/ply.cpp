@@ -35,7 +35,7 @@ void write_header(StreamBuffer& out, const IndexedMesh& mesh, const VertexAttrib
   out.append("ply\nformat binary_little_endian 1.0\nelement vertex ");
   out.append_decimal(mesh.positions.size());
   out.append("\nproperty double x\nproperty double y\nproperty double z");
-  for_each_array([&](const char* name, auto array) { declare(out, name, attributes.*array); });
+  for_each_number([&](const char* name, auto array) { declare(out, name, attributes.*array); });
   out.append("\nelement face ");
   out.append_decimal(mesh.triangles.size());
   out.append("\nproperty list uchar int vertex_indices\nend_header\n");
@@ -50,7 +50,7 @@ Result<void> write_ply(std::ostream& stream, const IndexedMesh& mesh, const Vert
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     const Vec3d index = to_double(mesh.positions[v]);
     out.append_raw(to_space ? to_space(index) : index);
-    for_each_array([&](const char*, auto array) {
+    for_each_number([&](const char*, auto array) {
       if (!(attributes.*array).empty()) out.append_raw((attributes.*array)[v]);
     });
   }

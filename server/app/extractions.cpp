@@ -440,6 +440,30 @@ Result<LevelFile> Extractions::part(const std::string& id, int level, int part) 
   return bytes_file(*std::move(bytes));
 }
 
+std::optional<LevelFormat> level_format_of(std::string_view extension) {
+  using enum LevelFormat;
+  for (const LevelFormat format : {drc, glb, ply, obj, stl}) {
+    if (extension == extension_of(format)) return format;
+  }
+  return std::nullopt;
+}
+
+std::string extension_of(LevelFormat format) {
+  switch (format) {
+    case LevelFormat::drc:
+      return "drc";
+    case LevelFormat::glb:
+      return "glb";
+    case LevelFormat::ply:
+      return "ply";
+    case LevelFormat::obj:
+      return "obj";
+    case LevelFormat::stl:
+      return "stl";
+  }
+  return "";
+}
+
 bool Extractions::is_level_made(const std::string& id, int level, LevelFormat format) {
   const auto made = store_.exists(key(id, level_file_name(level, format) + ".json"));
   if (made && *made) return true;

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "engine/base/result.h"
 #include "server/app/byte_stream.h"
@@ -20,7 +21,11 @@
 
 namespace geosis::server {
 
-enum class LevelFormat { drc, ply, obj };
+enum class LevelFormat { drc, glb, ply, obj, stl };
+
+/// "drc", "glb", ...: the extension of its files; nullopt for any other word.
+std::optional<LevelFormat> level_format_of(std::string_view extension);
+std::string extension_of(LevelFormat format);
 
 /// One file of a result, with what a transport says about it.
 struct LevelFile {

@@ -1,15 +1,15 @@
 #include "server/app/level_export.h"
 
-#include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <limits>
 #include <vector>
 
 #include "engine/base/digest.h"
+#include "engine/codec/glb.h"
 #include "engine/codec/level_codec.h"
 #include "engine/codec/obj.h"
 #include "engine/codec/ply.h"
+#include "engine/codec/stl.h"
 #include "server/documents/volume_document.h"
 
 namespace geosis::server {
@@ -29,17 +29,7 @@ Result<DecodedLevel> read_level(const Json& entry, int level, const PartReader& 
   return decode_level({parts.begin(), parts.end()}, threads);
 }
 
-/// Bits that hold every position of the mesh.
-int position_bits_of(const IndexedMesh& mesh) {
-  float longest = 0;
-  for (const Vec3f& p : mesh.positions) longest = std::max({longest, p.x, p.y, p.z});
-  return position_bits_for(static_cast<std::int32_t>(std::ceil(longest)) + 1);
-}
-
-Result<void> write_drc(std::ostream& out, const DecodedLevel& level, const std::array<double, 16>& transform) {
-  const EncodeOptions options{.position_bits = position_bits_of(level.mesh),
-                              .max_part_triangles = std::numeric_limits<std::int32_t>::max(),
-                              .transform = transform};
+Result<void> write_drc(std::ostream& out, const DecodedLevel& level, const EncodeOptions& options) {
   const auto encoded = encode_level(level.mesh, level.attributes, options);
   if (!encoded) return encoded.error();
   const auto& bytes = encoded->parts.front().bytes;
@@ -49,14 +39,21 @@ Result<void> write_drc(std::ostream& out, const DecodedLevel& level, const std::
 
 Result<void> write_level(std::ostream& out, const DecodedLevel& level, LevelFormat format,
                          const std::array<double, 16>& transform) {
+  const EncodeOptions options{.position_bits = position_bits_for(level.mesh),
+                              .max_part_triangles = std::numeric_limits<std::int32_t>::max(),
+                              .transform = transform};
   const auto map = [geometry = geometry_of(transform)](Vec3d p) { return geometry.map(p); };
   switch (format) {
     case LevelFormat::drc:
-      return write_drc(out, level, transform);
+      return write_drc(out, level, options);
+    case LevelFormat::glb:
+      return write_glb(out, level.mesh, level.attributes, options);
     case LevelFormat::ply:
       return write_ply(out, level.mesh, level.attributes, map);
     case LevelFormat::obj:
       return write_obj(out, level.mesh, map);
+    case LevelFormat::stl:
+      return write_stl(out, level.mesh, map, {transform[3], transform[7], transform[11]});
   }
   return {};
 }
@@ -79,8 +76,7 @@ Result<Json> describe(const std::filesystem::path& path) {
 }  // namespace
 
 std::string level_file_name(int level, LevelFormat format) {
-  const char* const extension = format == LevelFormat::drc ? ".drc" : format == LevelFormat::ply ? ".ply" : ".obj";
-  return "levels/" + std::to_string(level) + extension;
+  return "levels/" + std::to_string(level) + "." + extension_of(format);
 }
 
 Result<Json> export_level(const std::filesystem::path& path, const Json& manifest, int level, LevelFormat format,

@@ -14,7 +14,8 @@ namespace geosis::server {
 std::string level_file_name(int level, LevelFormat format);
 
 /// Writes level `level` of a finished extraction, whole, into a file: decoded from its parts, joined along the seams,
-/// and encoded as one Draco file, or mapped to the requested space as PLY or OBJ.
+/// and encoded as one Draco file, or as GLB, or mapped to the requested space as PLY, OBJ or STL
+/// (STL minus the manifest's origin).
 ///
 /// returns   {"sha256", "bytes"} of the file.
 /// errors    those of the part reader; malformed_input: damaged parts; unavailable: writing failed.

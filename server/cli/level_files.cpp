@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <optional>
 
+#include "engine/codec/glb.h"
 #include "engine/codec/obj.h"
 #include "engine/codec/ply.h"
+#include "engine/codec/stl.h"
 #include "engine/pipeline/output_space.h"
 #include "server/documents/volume_document.h"
 
@@ -39,19 +41,27 @@ Result<void> write_document(OutputFolder& folder, const char* name, const Json& 
 }
 
 Result<void> write_exports(OutputFolder& folder, const ReconstructedLevel& made, std::size_t level, FileFormats formats,
-                           const PositionMap& to_space) {
-  const std::string name = "lod" + std::to_string(level);
+                           const AffineGeometry& space) {
   const IndexedMesh& mesh = made.lod.mesh;
-  if (formats.ply) {
-    auto written = folder.write(name + ".ply", [&](std::ostream& stream) { 
-      return write_ply(stream, mesh, made.attributes, to_space);
-    });
-    if (!written) return written;
+  const PositionMap to_space = [&](Vec3d index) { return space.map(index); };
+  const auto write = [&](const char* extension, const auto& write_to) {
+    return folder.write("lod" + std::to_string(level) + extension, write_to);
+  };
+  Result<void> written;
+  if (formats.glb) {
+    const EncodeOptions options{.position_bits = position_bits_for(mesh), .transform = *space.affine()};
+    written = write(".glb", [&](std::ostream& stream) { return write_glb(stream, mesh, made.attributes, options); });
   }
-  if (formats.obj) {
-    return folder.write(name + ".obj", [&](std::ostream& stream) { return write_obj(stream, mesh, to_space); });
+  if (formats.ply && written) {
+    written = write(".ply", [&](std::ostream& stream) { return write_ply(stream, mesh, made.attributes, to_space); });
   }
-  return {};
+  if (formats.obj && written) {
+    written = write(".obj", [&](std::ostream& stream) { return write_obj(stream, mesh, to_space); });
+  }
+  if (formats.stl && written) {
+    written = write(".stl", [&](std::ostream& stream) { return write_stl(stream, mesh, to_space, space.map({})); });
+  }
+  return written;
 }
 
 /// What follows the prefix and a number in the text; nullopt when it does not begin so.
@@ -70,12 +80,17 @@ Result<FileFormats> parse_file_formats(std::string_view text) {
   while (!text.empty()) {
     const auto name = text.substr(0, text.find(','));
     text.remove_prefix(std::min(name.size() + 1, text.size()));
-    if (name == "ply") {
+    if (name == "glb") {
+      formats.glb = true;
+    } else if (name == "ply") {
       formats.ply = true;
     } else if (name == "obj") {
       formats.obj = true;
+    } else if (name == "stl") {
+      formats.stl = true;
     } else if (name != "drc") {
-      return Error{ErrorCode::invalid_argument, "format \"" + std::string(name) + "\"; expected drc, ply or obj"};
+      return Error{ErrorCode::invalid_argument,
+                   "format \"" + std::string(name) + "\"; expected drc, glb, ply, obj or stl"};
     }
   }
   return formats;
@@ -94,7 +109,9 @@ bool is_result_file(const std::string& name) {
   if (name == "manifest.json" || name == kBodiesFile) return true;
   const auto after_level = without_number(name, "lod");
   if (!after_level) return false;
-  if (*after_level == ".drc" || *after_level == ".ply" || *after_level == ".obj") return true;
+  for (const char* extension : {".drc", ".glb", ".ply", ".obj", ".stl"}) {
+    if (*after_level == extension) return true;
+  }
   return without_number(*after_level, ".") == ".drc";
 }
 
@@ -102,14 +119,13 @@ Result<void> write_result(OutputFolder& folder, const VolumeDescription& volume,
                           const Results& results, FileFormats formats, Progress& progress) {
   const auto space = output_space(volume.geometry, options);
   if (!space) return space.error();
-  const PositionMap to_space = options.index_space ? PositionMap() : [&](Vec3d index) { return space->map(index); };
   const auto& levels = results.reconstruction.levels;
   for (std::size_t level = 0; level < levels.size(); ++level) {
     if (progress.cancelled())
       return Error{ErrorCode::cancelled, "stopped while writing level " + std::to_string(level)};
     progress.report("write", static_cast<double>(level) / static_cast<double>(levels.size()));
     if (auto written = write_parts(folder, levels[level].encoded, level); !written) return written;
-    auto written = write_exports(folder, levels[level], level, formats, to_space);
+    auto written = write_exports(folder, levels[level], level, formats, *space);
     if (!written) return written;
   }
   const VolumeSummary summary = summarize(volume);

@@ -15,10 +15,10 @@ namespace geosis::server {
 
 /// What a level is written as, beside the Draco parts that are always written.
 struct FileFormats {
-  bool ply = false, obj = false;
+  bool glb = false, ply = false, obj = false, stl = false;
 };
 
-/// From "drc,ply,obj". errors: invalid_argument.
+/// From "drc,glb,ply,obj,stl". errors: invalid_argument.
 Result<FileFormats> parse_file_formats(std::string_view text);
 
 /// The folder's file names: lod0.drc, or lod0.0.drc, lod0.1.drc, ... when level 0 has several parts.

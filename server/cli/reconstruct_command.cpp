@@ -138,7 +138,7 @@ Command add_reconstruct_command(CLI::App& app) {
   auto& command = *app.add_subcommand("reconstruct", "Surface of the body in an amplitude range, in levels of detail");
   auto arguments = std::make_shared<ReconstructArguments>(command);
   command.add_option("--out", arguments->out, "folder for manifest.json and the levels")->capture_default_str();
-  command.add_option("--formats", arguments->formats, "files of each level: drc (always written), ply, obj")
+  command.add_option("--formats", arguments->formats, "files of each level: drc (always written), glb, ply, obj, stl")
       ->capture_default_str();
   command.add_option("--threads", arguments->threads, "threads to use")
       ->check(CLI::Range(1, 1024))

@@ -136,13 +136,28 @@ int small_number(const std::string& digits) {
   return problem == std::errc{} ? number : -1;
 }
 
+const char* media_type_of(LevelFormat format) {
+  switch (format) {
+    case LevelFormat::drc:
+      return "model/vnd.google.draco";
+    case LevelFormat::glb:
+      return "model/gltf-binary";
+    case LevelFormat::ply:
+      return "model/ply";
+    case LevelFormat::obj:
+      return "model/obj";
+    case LevelFormat::stl:
+      return "model/stl";
+  }
+  return "application/octet-stream";
+}
+
 Reply level(Services services, const Request& request) {
   const std::string &id = request.captures[0], format = request.captures[2];
   const auto extraction = services.extractions.find(id);
   if (!extraction) return error_reply(extraction.error());
   if (!(*extraction)->snapshot().manifest) return not_done(**extraction);
-  const LevelFormat wanted = format == "drc" ? LevelFormat::drc : format == "ply" ? LevelFormat::ply : LevelFormat::obj;
-  const char* const type = format == "drc" ? "model/vnd.google.draco" : format == "ply" ? "model/ply" : "model/obj";
+  const LevelFormat wanted = *level_format_of(format);  // the route lets no other through
   const int number = small_number(request.captures[1]);
   std::optional<WaitingRoom::Seat> seat;
   if (!services.extractions.is_level_made(id, number, wanted)) {
@@ -150,7 +165,7 @@ Reply level(Services services, const Request& request) {
   }
   auto file = services.extractions.level(id, number, wanted);
   const std::string transform = file ? file->transform : "";
-  return file_reply(std::move(file), type, transform);
+  return file_reply(std::move(file), media_type_of(wanted), transform);
 }
 
 Reply part(Services services, const Request& request) {
@@ -222,7 +237,7 @@ void add_extraction_routes(Router& router, Services services) {
   router.get("/v1/extractions/([^/]+)/stream", with(stream));
   router.get("/v1/extractions/([^/]+)/manifest", with(manifest));
   router.get("/v1/extractions/([^/]+)/bodies", with(bodies));
-  router.get("/v1/extractions/([^/]+)/lods/([0-9]+)\\.(drc|ply|obj)", with(level));
+  router.get("/v1/extractions/([^/]+)/lods/([0-9]+)\\.(drc|glb|ply|obj|stl)", with(level));
   router.get("/v1/extractions/([^/]+)/lods/([0-9]+)/parts/([0-9]+)\\.drc", with(part));
 }
 

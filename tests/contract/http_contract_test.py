@@ -317,7 +317,7 @@ class Results(Refusals):
 
     def test_every_format_has_a_tag_a_range_and_a_head(self):
         extraction = done_extraction()
-        for name in ("lods/1.drc", "lods/1.ply", "lods/1.obj", "lods/1/parts/0.drc", "manifest"):
+        for name in ("lods/1.drc", "lods/1.glb", "lods/1.ply", "lods/1.obj", "lods/1.stl", "lods/1/parts/0.drc", "manifest"):
             target = f"/v1/extractions/{extraction}/{name}"
             whole = CLIENT.get(target)
             self.assertEqual(CLIENT.get(target, If_None_Match=whole.headers["etag"]).status, 304)
@@ -327,6 +327,20 @@ class Results(Refusals):
             self.assertEqual(CLIENT.get(target, Range=f"bytes={len(whole.body)}-").status, 416)
             head = CLIENT.call("HEAD", target)
             self.assertEqual((head.body, head.headers["content-length"]), (b"", str(len(whole.body))))
+
+    def test_glb_and_stl_come_with_their_types_and_counts(self):
+        extraction = done_extraction()
+        level = CLIENT.get(f"/v1/extractions/{extraction}/manifest").json()["levels"][1]
+        glb = CLIENT.get(f"/v1/extractions/{extraction}/lods/1.glb")
+        self.assertEqual(glb.headers["content-type"], "model/gltf-binary")
+        magic, version, length, json_length = struct.unpack("<4sIII", glb.body[:16])
+        self.assertEqual((magic, version, length), (b"glTF", 2, len(glb.body)))
+        indices = json.loads(glb.body[20 : 20 + json_length])["accessors"][-1]
+        self.assertEqual(indices["count"], 3 * level["triangles"])
+        stl = CLIENT.get(f"/v1/extractions/{extraction}/lods/1.stl")
+        self.assertEqual(stl.headers["content-type"], "model/stl")
+        self.assertEqual(struct.unpack("<I", stl.body[80:84])[0], level["triangles"])
+        self.assertEqual(len(stl.body), 84 + 50 * level["triangles"])
 
     def test_draco_files_say_how_they_lie_in_the_world(self):
         extraction = done_extraction()

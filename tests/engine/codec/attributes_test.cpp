@@ -72,6 +72,34 @@ TEST(VertexAttributesInLevels, UniformReliabilityCostsNextToNothing) {
   EXPECT_LT(carrying->parts[0].bytes.size(), plain->parts[0].bytes.size() + 60);
 }
 
+/// An octahedron of 1023 steps an edge: neighbours are up to a quarter of a degree apart.
+void expect_close_normals(const DecodedLevel& level) {
+  const auto expected = test::normals_of(level.mesh.positions);
+  ASSERT_EQ(level.attributes.normal.size(), expected.size());
+  for (std::size_t v = 0; v < expected.size(); ++v) {
+    EXPECT_LT(norm(level.attributes.normal[v] - expected[v]), 0.0044f);  // radians
+    EXPECT_NEAR(norm(level.attributes.normal[v]), 1, 1e-3);
+  }
+}
+
+TEST(VertexAttributesInLevels, NormalsComeBackWithinAQuarterOfADegree) {
+  for (int speed = 0; speed <= 10; speed += 2) {
+    const VertexAttributes attributes{.normal = test::normals_of(kMesh.positions)};
+    expect_close_normals(through_codec(kMesh, attributes, {.speed = speed}));
+  }
+}
+
+/// The join compares normals bit for bit, so that success says that the parts agree.
+TEST(VertexAttributesInLevels, NormalsAgreeAlongSeams) {
+  for (const int speed : {0, 4, 7, 10}) {
+    VertexAttributes attributes = attributes_of(kMesh.positions);
+    attributes.normal = test::normals_of(kMesh.positions);
+    const auto level = through_codec(kMesh, attributes, {.max_part_triangles = 90, .speed = speed});
+    expect_close_normals(level);
+    expect_same_attributes(level.attributes, attributes_of(level.mesh.positions));
+  }
+}
+
 void expect_refused(const VertexAttributes& attributes, const std::string& reason) {
   const auto encoded = encode_level(kMesh, attributes, {});
   ASSERT_FALSE(encoded) << reason;
@@ -89,6 +117,14 @@ TEST(VertexAttributesInLevels, BodiesBeyondTheLimitAreRefused) {
   VertexAttributes attributes = attributes_of(kMesh.positions);
   attributes.body[7] = kMaxBody + 1;
   expect_refused(attributes, "vertex 7: body 1073741824; at most 1073741823");
+}
+
+TEST(VertexAttributesInLevels, NormalsOfAnotherLengthAreRefused) {
+  for (const float x : {0.0f, 1.5f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    VertexAttributes attributes{.normal = test::normals_of(kMesh.positions)};
+    attributes.normal[3] = {x, 0, 0};
+    expect_refused(attributes, "vertex 3: the normal's length is");
+  }
 }
 
 /// Two triangles of a square that share the edge with the seam ids 1 and 2.

@@ -36,6 +36,16 @@ inline VertexAttributes attributes_of(const std::vector<Vec3f>& positions) {
   return attributes;
 }
 
+/// Unit vectors that tell which position they belong to.
+inline std::vector<Vec3f> normals_of(const std::vector<Vec3f>& positions) {
+  std::vector<Vec3f> normals;
+  for (const Vec3f p : positions) {
+    const Vec3f arm = p - Vec3f{31.3f, 30.1f, 29.7f};
+    normals.push_back(arm * (1 / norm(arm)));
+  }
+  return normals;
+}
+
 /// Bit for bit, so that NaN equals itself and 0 is not -0.
 inline void expect_same_attributes(const VertexAttributes& found, const VertexAttributes& expected) {
   EXPECT_EQ(found.reliability, expected.reliability);

@@ -1,3 +1,4 @@
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <sstream>
@@ -7,6 +8,7 @@
 
 #include "engine/codec/obj.h"
 #include "engine/codec/ply.h"
+#include "engine/codec/stl.h"
 #include "tests/support/lattice_meshes.h"
 
 namespace geosis {
@@ -124,6 +126,36 @@ TEST(WriteObj, WithoutMapHoldsIndexCoordinates) {
   EXPECT_EQ(stream.str(), "v 1 2.5 3.015625\nv 0 0 0\nv 1e+05 0 0\nf 1 2 3\n");
 }
 
+TEST(WriteStl, HoldsPositionsMinusTheOriginThatItsHeaderNames) {
+  std::stringstream stream;
+  ASSERT_TRUE(write_stl(stream, kMesh, to_world, {6'543'210.7, 432'100.1, -5}));
+  std::string header(80, ' ');
+  stream.read(header.data(), 80);
+  EXPECT_EQ(header.substr(0, 29), "origin 6543210.7 432100.1 -5 ");
+  ASSERT_EQ(take<std::uint32_t>(stream), kMesh.triangles.size());
+  for (const Triangle& triangle : kMesh.triangles) {
+    const Vec3f normal = take<Vec3f>(stream);
+    std::array<Vec3d, 3> corners;
+    for (int corner = 0; corner < 3; ++corner) {
+      corners[corner] = to_double(take<Vec3f>(stream));
+      const Vec3d p = to_double(kMesh.positions[triangle[corner]]);
+      EXPECT_LT(norm(corners[corner] - Vec3d{p.x * 12.5 / 3, -p.y / 7, p.z * 4 + 5}), 1e-4);
+    }
+    const Vec3d face = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    EXPECT_NEAR(dot(face, to_double(normal)), norm(face), 1e-4 * norm(face));
+    EXPECT_EQ(take<std::uint16_t>(stream), 0);
+  }
+  EXPECT_TRUE(stream);
+  EXPECT_EQ(stream.peek(), std::char_traits<char>::eof());
+}
+
+TEST(WriteStl, TriangleWithoutAreaHasNoNormal) {
+  std::stringstream stream;
+  ASSERT_TRUE(write_stl(stream, {{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, {{0, 1, 2}}}, {}, {}));
+  stream.seekg(84);
+  EXPECT_EQ(take<Vec3f>(stream), Vec3f{});
+}
+
 TEST(WritePly, FilesLargerThanTheBufferComeBackWhole) {
   const IndexedMesh mesh = test::sheet(100, 0);
   std::stringstream stream;
@@ -134,7 +166,8 @@ TEST(WritePly, FilesLargerThanTheBufferComeBackWhole) {
 TEST(WritePly, AFullDiskIsAnError) {
   std::stringstream stream;
   stream.setstate(std::ios::badbit);
-  for (const auto& written : {write_ply(stream, kMesh, {}, {}), write_obj(stream, kMesh, {})}) {
+  for (const auto& written :
+       {write_ply(stream, kMesh, {}, {}), write_obj(stream, kMesh, {}), write_stl(stream, kMesh, {}, {})}) {
     ASSERT_FALSE(written);
     EXPECT_EQ(written.error().code, ErrorCode::unavailable);
   }

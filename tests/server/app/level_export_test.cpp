@@ -44,11 +44,13 @@ TEST_F(LevelExportTest, LevelOfOnePartIsThatPart) {
   EXPECT_EQ(whole, read_all(*part->stream));
 }
 
-TEST_F(LevelExportTest, PlyAndObjAreMadeOnceAndStayTheSame) {
+TEST_F(LevelExportTest, OtherFormatsAreMadeOnceAndStayTheSame) {
   const std::string ply = file_of(3, LevelFormat::ply);
   EXPECT_TRUE(ply.starts_with("ply\n"));
   EXPECT_EQ(file_of(3, LevelFormat::ply), ply);
   EXPECT_TRUE(file_of(3, LevelFormat::obj).starts_with("v "));
+  EXPECT_TRUE(file_of(3, LevelFormat::glb).starts_with("glTF"));
+  EXPECT_TRUE(file_of(3, LevelFormat::stl).starts_with("origin 0 0 0 "));
 }
 
 TEST_F(LevelExportTest, SeveralPartsBecomeOneMesh) {

@@ -156,8 +156,8 @@ class Reconstruct(WithFolder):
                 self.assertLess(level["triangles"], manifest["levels"][level["level"] - 1]["triangles"])
 
     def test_gives_the_same_bytes_on_one_and_two_threads(self):
-        one, _ = self.reconstruct("one", *BODY, "--threads", "1", "--formats", "drc,ply,obj")
-        two, _ = self.reconstruct("two", *BODY, "--threads", "2", "--formats", "drc,ply,obj")
+        one, _ = self.reconstruct("one", *BODY, "--threads", "1", "--formats", "drc,glb,ply,obj,stl")
+        two, _ = self.reconstruct("two", *BODY, "--threads", "2", "--formats", "drc,glb,ply,obj,stl")
         self.assertEqual(files_in(one), files_in(two))
 
     def test_request_file_means_the_same_as_flags(self):
@@ -192,6 +192,19 @@ class Reconstruct(WithFolder):
             header = (out / f"lod{level['level']}.ply").read_bytes().split(b"end_header\n")[0].decode("ascii")
             self.assertIn(f"element vertex {level['vertices']}\n", header)
             self.assertIn(f"element face {level['triangles']}\n", header)
+
+    def test_writes_glb_and_stl_around_the_origin(self):
+        out, manifest = self.reconstruct("origin", *BODY, "--formats", "glb,stl")
+        for level in manifest["levels"]:
+            stl = (out / f"lod{level['level']}.stl").read_bytes()
+            self.assertEqual(len(stl), 84 + 50 * level["triangles"])
+            self.assertEqual([float(number) for number in stl[:80].split()[1:]], manifest["origin"])
+            first = struct.unpack("<12f", stl[84:132])[3:]
+            self.assertTrue(all(abs(coordinate) < 10_000 for coordinate in first), first)
+            glb = (out / f"lod{level['level']}.glb").read_bytes()
+            document = json.loads(glb[20 : 20 + struct.unpack("<I", glb[12:16])[0]])
+            self.assertEqual(document["nodes"][0]["extras"]["origin"], manifest["origin"])
+            self.assertEqual(document["accessors"][0]["count"], level["vertices"])
 
     def test_empty_range_leaves_the_manifest_alone(self):
         out, manifest = self.reconstruct("empty", "--range", "1000", "inf")

@@ -14,7 +14,8 @@ TEST(FileUrls, NumberPartsOnlyWhenThereAreSeveral) {
 }
 
 TEST(IsResultFile, KnowsItsOwnNamesAndNoOthers) {
-  for (const char* name : {"manifest.json", "lod0.drc", "lod12.3.drc", "lod4.ply", "lod0.obj"}) {
+  for (const char* name :
+       {"manifest.json", "lod0.drc", "lod12.3.drc", "lod4.ply", "lod0.obj", "lod1.glb", "lod2.stl"}) {
     EXPECT_TRUE(is_result_file(name)) << name;
   }
   for (const char* name : {"lod.drc", "lod0.drc.bak", "my-lod0.drc", "lod0.1.ply", "notes.txt", "manifestxjson", ""}) {
@@ -26,10 +27,12 @@ TEST(ParseFileFormats, ReadsTheList) {
   EXPECT_FALSE(parse_file_formats("drc").value().ply);
   EXPECT_TRUE(parse_file_formats("drc,ply").value().ply);
   EXPECT_TRUE(parse_file_formats("obj,drc").value().obj);
+  EXPECT_TRUE(parse_file_formats("glb,stl").value().glb);
+  EXPECT_TRUE(parse_file_formats("glb,stl").value().stl);
 }
 
 TEST(ParseFileFormats, RefusesOthers) {
-  for (const char* text : {"glb", "drc,,ply", "drc ply", "PLY"}) EXPECT_FALSE(parse_file_formats(text)) << text;
+  for (const char* text : {"gltf", "drc,,ply", "drc ply", "PLY"}) EXPECT_FALSE(parse_file_formats(text)) << text;
 }
 
 }  // namespace

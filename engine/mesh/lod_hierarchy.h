@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "engine/mesh/indexed_mesh.h"
@@ -12,6 +13,9 @@ enum class StoppedBy { none, floor, error_cap };
 /// One level of detail and what making it took.
 struct LodLevel {
   IndexedMesh mesh;
+  /// (n) for each vertex the vertex of M0 that it descends from: of those merged into it, one that lay near its place
+  /// in every merge, always of the same component. Empty for M0 itself, where each vertex is its own.
+  std::vector<std::int32_t> origin;
   double asked_ratio = 1;
   StoppedBy stopped_by = StoppedBy::none;
   double cost = 0;  ///< largest quadric cost accepted so far, in squared voxels times area

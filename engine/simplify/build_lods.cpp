@@ -81,15 +81,14 @@ Result<LodHierarchy> build_lods_in_windows(IndexedMesh m0, const BuildLodsOption
 
   LodHierarchy hierarchy;
   for (const double ratio : options.ratios) {
-    LodLevel& level = hierarchy.levels.emplace_back();
-    level.asked_ratio = ratio;
     if (ratio == 1) {
-      level.mesh = std::move(m0);
+      hierarchy.levels.emplace_back().mesh = std::move(m0);
       continue;
     }
     const std::int64_t target = triangles_for(ratio, all);
     if (!reducer.reduce(target)) return kCancelled;
-    level.mesh = reducer.snapshot();
+    LodLevel& level = hierarchy.levels.emplace_back(reducer.snapshot());
+    level.asked_ratio = ratio;
     level.cost = reducer.max_cost();
     if (reducer.at_floor()) level.stopped_by = StoppedBy::floor;
   }

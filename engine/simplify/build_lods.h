@@ -20,7 +20,8 @@ struct BuildLodsOptions {
 /// m0       manifold with or without boundary, oriented, vertices on the lattice (as extract_body makes it).
 /// returns  one level per ratio, with the topology of m0: Euler characteristic, components, genus of each component,
 ///          boundary loops, orientation. Vertices stay on the 1/64 lattice. A level that cannot be reached stops at
-///          its floor and says so. The same bytes for any number of threads.
+///          its floor and says so. Each vertex knows the one of m0 it descends from. The same bytes for any number of
+///          threads.
 /// errors   invalid_argument: ratios not falling or not in (0, 1].  cancelled.
 /// source   Garland & Heckbert 1997 (quadrics); the link condition of Dey et al. 1999.
 Result<LodHierarchy> build_lods(IndexedMesh m0, const BuildLodsOptions& options, Progress& progress);

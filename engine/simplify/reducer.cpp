@@ -40,14 +40,14 @@ double Reducer::max_cost() const {
   return whole_ ? std::max(mesh_.max_cost, whole_->max_cost()) : mesh_.max_cost;
 }
 
-IndexedMesh Reducer::snapshot() const {
-  if (!whole_) return to_indexed_mesh(mesh_);
+LodLevel Reducer::snapshot() const {
+  if (!whole_) return to_level(mesh_);
   WorkingMesh now{std::vector<WorkingVertex>(mesh_.vertices.size()), {}, {}};
   std::vector<LocalTriangle> triangles(static_cast<std::size_t>(whole_->triangles()));
   std::vector<std::int32_t> place(mesh_.vertices.size());
   whole_->store(now.vertices, triangles, place);
   for (const auto [a, b, c] : triangles) now.triangles.push_back({a, b, c});
-  return to_indexed_mesh(now);
+  return to_level(now);
 }
 
 bool Reducer::fits(std::int32_t size) const {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "engine/mesh/indexed_mesh.h"
+#include "engine/mesh/lod_hierarchy.h"
 #include "engine/simplify/pass.h"
 #include "engine/simplify/watch.h"
 #include "engine/simplify/window.h"
@@ -23,7 +23,7 @@ class Reducer {
   std::int64_t triangles() const;
   double max_cost() const;                     ///< of the collapses so far
   bool at_floor() const { return at_floor_; }  ///< fewer triangles were asked for and could not be had
-  IndexedMesh snapshot() const;
+  LodLevel snapshot() const;                   ///< mesh and origins
 
  private:
   bool fits(std::int32_t size) const;

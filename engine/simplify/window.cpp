@@ -19,6 +19,10 @@ constexpr float kQueueLimit = 2.0f;
 
 constexpr std::int64_t kTrianglesBetweenReports = 8192;
 
+bool nearer(Vec3f place, Vec3f p, Vec3f q) {
+  return dot(p - place, p - place) < dot(q - place, q - place);
+}
+
 using Costs = std::array<float, (kMaxDegree + kCostLanes) / kCostLanes * kCostLanes>;
 
 }  // namespace
@@ -119,6 +123,7 @@ bool Window::try_collapse(LocalVertex u, LocalVertex v) {
   max_cost_ = std::max(max_cost_, merged.c);
   // The planes that hold a boundary would fade away with the memory.
   kept.quadric = on_boundary ? merged : blend(merged, moved.planes, kFreshShare);
+  if (nearer(position, gone.position, kept.position)) kept.origin = gone.origin;
   kept.position = position;
   kept.on_boundary = on_boundary;
   commit(u, v, star);

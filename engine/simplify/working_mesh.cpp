@@ -42,7 +42,10 @@ void add_boundary_plane(WorkingVertex& a, WorkingVertex& b, Vec3f apex) {
 
 WorkingMesh make_working_mesh(const IndexedMesh& m0, const CornerTable& table) {
   WorkingMesh mesh{std::vector<WorkingVertex>(m0.positions.size()), m0.triangles, bounds_of(m0.positions)};
-  for (std::size_t v = 0; v < m0.positions.size(); ++v) mesh.vertices[v].position = m0.positions[v];
+  for (std::size_t v = 0; v < m0.positions.size(); ++v) {
+    mesh.vertices[v].position = m0.positions[v];
+    mesh.vertices[v].origin = static_cast<std::int32_t>(v);
+  }
   for (const auto& [a, b, c] : mesh.triangles) {
     add_triangle_plane(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
   }
@@ -56,21 +59,22 @@ WorkingMesh make_working_mesh(const IndexedMesh& m0, const CornerTable& table) {
   return mesh;
 }
 
-IndexedMesh to_indexed_mesh(const WorkingMesh& mesh) {
+LodLevel to_level(const WorkingMesh& mesh) {
   constexpr std::int32_t kUnused = -1;
   std::vector<std::int32_t> place(mesh.vertices.size(), kUnused);
   for (const Triangle& triangle : mesh.triangles) {
     for (const std::int32_t v : triangle) place[v] = 0;
   }
-  IndexedMesh result;
+  LodLevel level;
   for (std::size_t v = 0; v < place.size(); ++v) {
     if (place[v] == kUnused) continue;
-    place[v] = static_cast<std::int32_t>(result.positions.size());
-    result.positions.push_back(mesh.vertices[v].position);
+    place[v] = static_cast<std::int32_t>(level.origin.size());
+    level.mesh.positions.push_back(mesh.vertices[v].position);
+    level.origin.push_back(mesh.vertices[v].origin);
   }
-  result.triangles.reserve(mesh.triangles.size());
-  for (const auto& [a, b, c] : mesh.triangles) result.triangles.push_back({place[a], place[b], place[c]});
-  return result;
+  level.mesh.triangles.reserve(mesh.triangles.size());
+  for (const auto& [a, b, c] : mesh.triangles) level.mesh.triangles.push_back({place[a], place[b], place[c]});
+  return level;
 }
 
 }  // namespace geosis

@@ -5,6 +5,7 @@
 
 #include "engine/mesh/corner_table.h"
 #include "engine/mesh/indexed_mesh.h"
+#include "engine/mesh/lod_hierarchy.h"
 #include "engine/simplify/quadric.h"
 
 namespace geosis {
@@ -12,7 +13,8 @@ namespace geosis {
 /// A vertex while levels are made: one cache line.
 struct alignas(64) WorkingVertex {
   Vec3f position;
-  Quadric quadric;  ///< in the vertex's own frame
+  Quadric quadric;          ///< in the vertex's own frame
+  std::int32_t origin = 0;  ///< vertex of M0
   bool on_boundary = false;
   bool locked = false;  ///< for this pass: a triangle leaves the window, or too many triangles meet here
 };
@@ -33,7 +35,7 @@ struct WorkingMesh {
 /// edges, so that rims keep their shape. The table must be that of m0, which must be manifold.
 WorkingMesh make_working_mesh(const IndexedMesh& m0, const CornerTable& table);
 
-/// The plain mesh, without unused vertices.
-IndexedMesh to_indexed_mesh(const WorkingMesh& mesh);
+/// The plain mesh with its origins, without unused vertices.
+LodLevel to_level(const WorkingMesh& mesh);
 
 }  // namespace geosis

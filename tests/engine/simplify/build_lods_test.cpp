@@ -4,9 +4,11 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include <gtest/gtest.h>
 
+#include "engine/mesh/components.h"
 #include "engine/simplify/window_sizes.h"
 #include "tests/engine/simplify/field_mesh.h"
 #include "tests/engine/simplify/level_checks.h"
@@ -146,6 +148,49 @@ TEST(BuildLods, KeepsTheTopologyOfNoise) {
   }
 }
 
+/// Component of m0 that each vertex of the level descends from, one for each component of the level.
+std::vector<std::int32_t> components_of_origins(const LodLevel& level, const Components& of_m0) {
+  const Components components = find_components(level.mesh);
+  std::vector<std::int32_t> found(components.count, Components::kUnused);
+  for (std::size_t v = 0; v < level.origin.size(); ++v) {
+    std::int32_t& component = found[components.of_vertex[v]];
+    if (component == Components::kUnused) component = of_m0.of_vertex[level.origin[v]];
+    EXPECT_EQ(component, of_m0.of_vertex[level.origin[v]]) << "vertex " << v;
+  }
+  return found;
+}
+
+TEST(BuildLods, EachComponentDescendsFromItsOwn) {
+  for (const WindowSizes& sizes : {WindowSizes{}, kSmallWindows}) {
+    const std::array<int, 3> shape{20, 20, 20};
+    const IndexedMesh m0 = mesh_field(shape, closed_on_faces(shape, noise(3)));
+    const Components of_m0 = find_components(m0);
+    const LodHierarchy hierarchy = lods(m0, {}, sizes);
+    EXPECT_TRUE(hierarchy.levels[0].origin.empty());
+    for (std::size_t i = 1; i < hierarchy.levels.size(); ++i) {
+      ASSERT_EQ(hierarchy.levels[i].origin.size(), hierarchy.levels[i].mesh.positions.size());
+      std::vector<std::int32_t> found = components_of_origins(hierarchy.levels[i], of_m0);
+      std::sort(found.begin(), found.end());
+      std::vector<std::int32_t> all(of_m0.count);
+      std::iota(all.begin(), all.end(), 0);
+      EXPECT_EQ(found, all) << "level " << i;
+    }
+  }
+}
+
+TEST(BuildLods, OriginsLieNearTheirVertices) {
+  const IndexedMesh m0 = sphere();
+  for (const WindowSizes& sizes : {WindowSizes{}, kSmallWindows}) {
+    const LodLevel level = lods(m0, {.ratios = {0.25}}, sizes).levels[0];
+    std::vector<std::int32_t> origins = level.origin;
+    std::sort(origins.begin(), origins.end());
+    EXPECT_TRUE(std::adjacent_find(origins.begin(), origins.end()) == origins.end()) << "an origin has two heirs";
+    for (std::size_t v = 0; v < level.origin.size(); ++v) {
+      EXPECT_LT(norm(to_double(level.mesh.positions[v] - m0.positions[level.origin[v]])), 2.0) << "vertex " << v;
+    }
+  }
+}
+
 TEST(BuildLods, GivesTheSameBytesForAnyNumberOfThreads) {
   const IndexedMesh m0 = mesh_field({36, 36, 36}, gyroid(13, 0.2));
   const LodHierarchy one = lods(m0, {.threads = 1}, kSmallWindows);
@@ -153,6 +198,7 @@ TEST(BuildLods, GivesTheSameBytesForAnyNumberOfThreads) {
     const LodHierarchy many = lods(m0, {.threads = threads}, kSmallWindows);
     for (std::size_t i = 0; i < one.levels.size(); ++i) {
       EXPECT_TRUE(same_bytes(many.levels[i].mesh, one.levels[i].mesh)) << threads << " threads, level " << i;
+      EXPECT_EQ(many.levels[i].origin, one.levels[i].origin);
       EXPECT_EQ(many.levels[i].cost, one.levels[i].cost);
     }
   }

@@ -23,10 +23,15 @@ const ROUNDS = Object.freeze([
   { towards: 0, share: 0.28 },
 ]);
 
+/** The palette in all its rounds, for the page and for the renderer. */
+const COLOURS = Object.freeze(ROUNDS.flatMap(({ towards, share }) =>
+  PALETTE.map((colour) => hexOf(channelsOf(colour).map((channel) => channel + share * (towards - channel)))),
+));
+const LINEAR_COLOURS = Object.freeze(COLOURS.map(linearOf));
+
 /** A body's colour, the same for the same number always. */
 export function bodyColour(body) {
-  const { towards, share } = ROUNDS[Math.floor(body / PALETTE.length) % ROUNDS.length];
-  return hexOf(channelsOf(PALETTE[body % PALETTE.length]).map((channel) => channel + share * (towards - channel)));
+  return COLOURS[body % COLOURS.length];
 }
 
 /** The colour of a body in a colouring. */
@@ -66,21 +71,22 @@ export function filledOf({ reliability }, colouring) {
 }
 
 function paintBodies(colours, body) {
-  let last = -1;
-  let colour = null;
-  for (let vertex = 0; vertex < body.length; ++vertex) {
-    if (body[vertex] !== last) colour = linearOf(bodyColour(body[vertex]));
-    last = body[vertex];
-    for (let channel = 0; channel < 3; ++channel) colours[3 * vertex + channel] = colour[channel];
+  for (let vertex = 0, at = 0; vertex < body.length; ++vertex, at += 3) {
+    const [red, green, blue] = LINEAR_COLOURS[body[vertex] % LINEAR_COLOURS.length];
+    colours[at] = red;
+    colours[at + 1] = green;
+    colours[at + 2] = blue;
   }
 }
 
 function paintReliability(colours, reliability, plain, pale) {
-  for (let vertex = 0; vertex < reliability.length; ++vertex) {
-    const share = reliability[vertex] / MEASURED;
-    for (let channel = 0; channel < 3; ++channel) {
-      colours[3 * vertex + channel] = share * plain[channel] + (1 - share) * pale[channel];
-    }
+  const shades = Array.from({ length: MEASURED + 1 }, (_, value) =>
+    plain.map((channel, at) => (value * channel + (MEASURED - value) * pale[at]) / MEASURED));
+  for (let vertex = 0, at = 0; vertex < reliability.length; ++vertex, at += 3) {
+    const [red, green, blue] = shades[reliability[vertex]];
+    colours[at] = red;
+    colours[at + 1] = green;
+    colours[at + 2] = blue;
   }
 }
 

@@ -58,7 +58,9 @@ export function bodyLast(triangles, bodies, body) {
   let back = triangles.length;
   for (let at = 0; at < triangles.length; at += 3) {
     const to = bodies[triangles[at]] === body ? (back -= 3) : (front += 3) - 3;
-    for (let corner = 0; corner < 3; ++corner) ordered[to + corner] = triangles[at + corner];
+    ordered[to] = triangles[at];
+    ordered[to + 1] = triangles[at + 1];
+    ordered[to + 2] = triangles[at + 2];
   }
   return { triangles: ordered, others: front };
 }

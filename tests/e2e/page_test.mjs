@@ -3,12 +3,13 @@
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
-import { createRequire } from 'node:module';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, beforeEach, describe, it } from 'node:test';
 
-const { chromium } = createRequire(new URL('../../viewer/package.json', import.meta.url))('playwright-core');
+import {
+  colourBy, isWarm, launchBrowser, openPage, reconstructBy, shareOfPixels, waitUntilDone as waitUntilPageDone,
+} from '../../viewer/test/browser.mjs';
 
 const { GEOSIS, GEOSIS_URL, GEOSIS_SCREENSHOTS = mkdtempSync(join(tmpdir(), 'geosis-screenshots-')) } = process.env;
 const LEVELS = 5;
@@ -16,50 +17,27 @@ const PATIENCE_MS = 60_000;
 
 let browser;
 let page;
-let mistakes;
 
 const levelRows = () => page.locator('#levels tbody tr');
 const triangles = async () => (await levelRows().last().locator('td').nth(1).textContent()).replace(/\D/g, '');
 
-async function waitUntilDone() {
-  await page.waitForSelector('body[data-phase="done"]', { timeout: PATIENCE_MS });
-  await page.waitForSelector('#levels tr[data-level="0"][aria-current="true"]', { timeout: PATIENCE_MS });
-}
+const waitUntilDone = () => waitUntilPageDone(page);
+const bodyShare = () => shareOfPixels(page, isWarm);
 
 async function screenshot(name) {
   await page.screenshot({ path: join(GEOSIS_SCREENSHOTS, `${name}.png`) });
 }
 
-/** Share of the canvas' pixels that have the body's colour: clearly more red than blue. */
-async function bodyShare() {
-  const png = (await page.locator('#view').screenshot()).toString('base64');
-  return page.evaluate(async (data) => {
-    const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
-    const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
-    context.drawImage(image, 0, 0);
-    const { data: pixels } = context.getImageData(0, 0, image.width, image.height);
-    let warm = 0;
-    for (let at = 0; at < pixels.length; at += 4) warm += pixels[at] > pixels[at + 2] + 40;
-    return warm / (image.width * image.height);
-  }, png);
-}
-
 describe('the page', () => {
   before(async () => {
     mkdirSync(GEOSIS_SCREENSHOTS, { recursive: true });
-    browser = await chromium.launch({
-      executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-      args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
-    });
+    browser = await launchBrowser();
   });
   after(() => browser?.close());
 
   beforeEach(async () => {
     await page?.context().close();
-    page = await browser.newPage({ viewport: { width: 1360, height: 860 } });
-    mistakes = [];
-    page.on('pageerror', (error) => mistakes.push(error.message));
-    await page.goto(GEOSIS_URL);
+    page = await openPage(browser, GEOSIS_URL);
     await waitUntilDone();
   });
 
@@ -70,7 +48,7 @@ describe('the page', () => {
     assert.ok(distances.every((text) => /^[\d.]+ \/ [\d.]+$/.test(text)), distances.join());
     assert.ok((await bodyShare()) > 0.005, 'no body is drawn');
     await screenshot('opened');
-    assert.deepEqual(mistakes, []);
+    assert.deepEqual(page.mistakes, []);
   });
 
   it('reconstructs again when a handle is moved by keyboard or pointer', async () => {
@@ -91,7 +69,7 @@ describe('the page', () => {
     await page.waitForFunction((before) => document.querySelector('#levels tbody tr:last-child td:nth-child(2)')
       ?.textContent.replace(/\D/g, '') !== before, second);
     await waitUntilDone();
-    assert.deepEqual(mistakes, []);
+    assert.deepEqual(page.mistakes, []);
   });
 
   it('keeps the range in the address, so that a link shows the same body', async () => {
@@ -112,6 +90,33 @@ describe('the page', () => {
     await page.getByText('Nothing of the survey lies in this range.').waitFor({ timeout: PATIENCE_MS });
     assert.equal(await levelRows().count(), 0);
     assert.equal(await bodyShare(), 0);
+  });
+
+  it('lists the bodies, and singles out the one whose row is clicked', async () => {
+    const row = page.locator('#bodies tbody tr').first();
+    assert.match(await row.locator('td').nth(1).textContent(), /\d/);
+    await colourBy(page, 'bodies');
+    await row.click();
+    assert.equal(await row.getByRole('button').getAttribute('aria-pressed'), 'true');
+    assert.match(await page.textContent('#selection'), /^Body 0: .* samples?/);
+    assert.ok((await bodyShare()) > 0.005, 'the body is not drawn');
+    await screenshot('singled_out');
+    await page.keyboard.press('Escape');
+    assert.ok(await page.isHidden('#selection'));
+    assert.deepEqual(page.mistakes, []);
+  });
+
+  it('fills missing traces, and shows where', async () => {
+    const before = await triangles();
+    await reconstructBy(page, () => page.selectOption('#fill', 'linear'));
+    assert.notEqual(await triangles(), before);
+    assert.match(page.url(), /missing=linear/);
+    const plain = await bodyShare();
+    await colourBy(page, 'reliability');
+    assert.ok(await page.isVisible('#legend'));
+    assert.notEqual(await bodyShare(), plain);
+    await screenshot('reliability');
+    assert.deepEqual(page.mistakes, []);
   });
 
   it('does not ask for a range that makes no sense', async () => {

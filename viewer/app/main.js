@@ -5,10 +5,13 @@ import { Histogram } from '../core/histogram.js';
 import { debounced, Latest } from '../core/latest.js';
 import { displayTransform, extentOf, suggestedExaggeration } from '../core/placement.js';
 import { parseEnd, rangeFromText, rangeMistake, rangeToText } from '../core/range.js';
+import {
+  choicesFromAddress, choicesToAddress, hasMissing, noChoices, parseMinVoxels, requestOf,
+} from '../core/request.js';
 import { PartDecoder } from '../decode/decoder.js';
-import { LevelView } from '../three/level_view.js';
 import { Stage } from '../three/stage.js';
 import { AxisLabels, SurveyBox } from '../three/survey_box.js';
+import { Appearance } from './appearance.js';
 import { HistogramView } from './histogram_view.js';
 import { showLevels } from './levels_table.js';
 import { Reconstruction } from './reconstruction.js';
@@ -20,10 +23,9 @@ const DEBOUNCE_MS = 250;
 const element = (id) => document.getElementById(id);
 const api = new GeosisApi();
 const stage = new Stage(element('view'));
-const level = new LevelView();
 const box = new SurveyBox();
 const labels = new AxisLabels(element('labels'));
-stage.world.add(level, box);
+stage.world.add(box);
 stage.afterDraw((camera, width, height) => labels.follow(camera, stage.world, width, height));
 
 /** The volume on the screen: its document, its way to the display and its histogram. */
@@ -31,6 +33,7 @@ let volume = null;
 let display = null;
 let histogram = null;
 let range = { low: null, high: null };
+let choices = noChoices;
 const opening = new Latest();
 
 const histogramView = new HistogramView(element('histogram'), {
@@ -41,20 +44,39 @@ const histogramView = new HistogramView(element('histogram'), {
   },
 });
 
+const appearanceElements = {
+  colouring: element('colouring'), legend: element('legend'), selection: element('selection'), bodies: element('bodies'),
+};
+const appearance = new Appearance(stage, appearanceElements, {
+  onColouring: (name) => remember({ colour: name === 'plain' ? null : name }),
+});
+
 const decoder = new PartDecoder(new Worker('decode_worker.js'));
 const reconstruction = new Reconstruction(api, decoder, {
   onState: showState,
-  onLevel(parts) {
-    level.replace(parts);
-    stage.draw();
-  },
+  onLevel: (parts) => appearance.draw(parts),
 });
-const reconstructSoon = debounced(reconstruct, DEBOUNCE_MS);
+const reconstructSoon = debounced(() => reconstruct({ onlyIfNew: true }), DEBOUNCE_MS);
+/** What was asked for last, as text. */
+let asked = '';
 
-function reconstruct() {
-  if (!volume || rangeMistake(range)) return;
-  rememberInAddress();
-  reconstruction.start(volume.id, range, display);
+function reconstruct({ onlyIfNew = false } = {}) {
+  if (!volume || mistakeInRequest()) return;
+  const request = requestOf(range, wantedChoices());
+  const asText = JSON.stringify([volume.id, request]);
+  if (onlyIfNew && asText === asked) return;
+  asked = asText;
+  rememberRequest();
+  reconstruction.start(volume.id, request, display);
+}
+
+/** The choices as far as this volume has them. */
+function wantedChoices() {
+  return hasMissing(volume) ? choices : { ...choices, fill: 'none' };
+}
+
+function mistakeInRequest() {
+  return rangeMistake(range) || (choices.minVoxels === undefined ? 'Type how many voxels a body has to have at least.' : '');
 }
 
 function showState(state) {
@@ -63,10 +85,7 @@ function showState(state) {
   element('status').classList.toggle('problem', state.phase === 'failed');
   element('progress').value = state.progress;
   showLevels(element('levels').tBodies[0], state);
-  if (state.phase === 'idle' || state.manifest?.empty) {
-    level.replace([]);
-    stage.draw();
-  }
+  appearance.show(state);
 }
 
 function showRange(changed) {
@@ -78,15 +97,28 @@ function showRange(changed) {
 }
 
 function noteRange() {
-  const mistake = rangeMistake(range);
+  const mistake = mistakeInRequest();
   element('range-note').textContent = mistake || (histogram ? `${formatShare(histogram.share(range))} of the samples` : '');
   element('reconstruct').disabled = !volume || mistake !== '';
 }
 
-function rememberInAddress() {
+function showChoices(changed) {
+  choices = changed;
+  element('fill').value = choices.fill;
+  element('specks').value = choices.minVoxels || '';
+}
+
+function rememberRequest() {
+  remember({ volume: volume.id, range: rangeToText(range), ...choicesToAddress(choices) });
+}
+
+/** Keeps these in the page's address; null takes one away. */
+function remember(values) {
   const address = new URL(location.href);
-  address.searchParams.set('volume', volume.id);
-  address.searchParams.set('range', rangeToText(range));
+  for (const [name, value] of Object.entries(values)) {
+    if (value === null) address.searchParams.delete(name);
+    else address.searchParams.set(name, value);
+  }
   history.replaceState(null, '', address);
 }
 
@@ -120,7 +152,10 @@ function placeVolume(document_) {
   display = displayTransform(volume.geometry.transform, volume.dims);
   box.place(volume.dims, display);
   labels.place(volume, display);
-  exaggerate(suggestedExaggeration(extentOf(display, volume.dims)));
+  element('fill-choice').hidden = !hasMissing(volume);
+  const extent = extentOf(display, volume.dims);
+  appearance.placeIn(volume.geometry.unit, extent.horizontal);
+  exaggerate(suggestedExaggeration(extent));
   frame();
   const [inlines, crosslines, samples] = volume.dims.map(formatCount);
   const holes = volume.missing.traces > 0 ? `, ${formatCount(volume.missing.traces)} traces missing` : '';
@@ -181,6 +216,15 @@ function listenToForm() {
       if (!rangeMistake(range)) histogramView.range = range;
     });
   }
+  element('fill').addEventListener('change', ({ target }) => {
+    choices = { ...choices, fill: target.value };
+    reconstructSoon();
+  });
+  element('specks').addEventListener('input', ({ target }) => {
+    choices = { ...choices, minVoxels: parseMinVoxels(target.value) };
+    noteRange();
+  });
+  element('specks').addEventListener('change', reconstructSoon);
   element('range').addEventListener('submit', (event) => {
     event.preventDefault();
     reconstruct();
@@ -190,8 +234,7 @@ function listenToForm() {
 function listenToTools() {
   element('exaggeration').addEventListener('input', ({ target }) => exaggerate(Number(target.value)));
   element('wireframe').addEventListener('change', ({ target }) => {
-    level.wireframe = target.checked;
-    stage.draw();
+    appearance.wireframe = target.checked;
   });
   element('reset').addEventListener('click', () => (volume ? frame() : stage.resetView()));
 }
@@ -216,7 +259,7 @@ function followColours() {
     const style = getComputedStyle(document.documentElement);
     const color = (name) => style.getPropertyValue(name).trim();
     stage.background = color('--sky');
-    level.color = color('--body');
+    appearance.theme = { plain: color('--body'), pale: color('--body-filled'), line: color('--ink') };
     box.color = color('--quiet');
     stage.draw();
   };
@@ -238,6 +281,8 @@ async function begin() {
   const first = address.get('volume') ?? volumes[0]?.id;
   if (!first) return;
   element('survey').value = first;
+  showChoices(choicesFromAddress(address));
+  appearance.colouring = address.get('colour');
   await openSurvey(first, rangeFromText(address.get('range')));
 }
 

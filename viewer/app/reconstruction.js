@@ -1,10 +1,9 @@
 import {
-  failed, idle, levelKnown, levelShown, manifestCame, progressed, started,
+  bodiesCame, bodiesFailed, failed, idle, levelKnown, levelShown, manifestCame, progressed, started,
 } from '../core/extraction_state.js';
 import { Latest } from '../core/latest.js';
 import { LevelAssembly } from '../core/level_assembly.js';
 import { Problem } from '../core/problem.js';
-import { requestOf } from '../core/range.js';
 
 /**
  * Asks for a body and follows it until its last level is drawn. A new request takes the place of the running one.
@@ -26,11 +25,11 @@ export class Reconstruction {
     this.#onLevel = onLevel;
   }
 
-  /** display   index -> display of the volume, 12 numbers. */
-  async start(volume, range, display) {
+  /** request   as requestOf() makes it.  display   index -> display of the volume, 12 numbers. */
+  async start(volume, request, display) {
     this.#set(started());
     try {
-      await this.#newest.run((signal) => this.#follow(volume, range, display, signal));
+      await this.#newest.run((signal) => this.#follow(volume, request, display, signal));
     } catch (error) {
       this.#set(failed(this.#state, error instanceof Problem ? error.message : `Something went wrong: ${error.message}`));
     }
@@ -47,8 +46,8 @@ export class Reconstruction {
     this.#onState(state);
   }
 
-  async #follow(volume, range, display, signal) {
-    const { id } = await this.#api.createExtraction(volume, requestOf(range), signal);
+  async #follow(volume, request, display, signal) {
+    const { id } = await this.#api.createExtraction(volume, request, signal);
     let isComplete = false;
     signal.addEventListener('abort', () => isComplete || this.#api.withdraw(id));
     this.#listen(id, signal);
@@ -58,6 +57,17 @@ export class Reconstruction {
       else await this.#decode(item, display, assembly, signal);
     }
     isComplete = true;
+    if (!this.#state.manifest?.empty) await this.#listBodies(id, signal);
+  }
+
+  /** The list is an addition: without it everything else stays. */
+  async #listBodies(id, signal) {
+    try {
+      this.#set(bodiesCame(this.#state, await this.#api.bodies(id, signal)));
+    } catch (error) {
+      if (signal.aborted) throw error;
+      this.#set(bodiesFailed(this.#state, error.message));
+    }
   }
 
   async #decode(part, display, assembly, signal) {

@@ -42,6 +42,13 @@ export class GeosisApi {
     });
   }
 
+  /** The bodies of a finished extraction, largest first. */
+  async bodies(extraction, signal) {
+    const { bodies } = await this.#json(`/v1/extractions/${encodeURIComponent(extraction)}/bodies`, { signal });
+    if (!Array.isArray(bodies)) throw new Problem({ detail: 'The server answered with something else.' });
+    return bodies;
+  }
+
   /** Tells that nobody waits for it here any more. Never fails: it is a courtesy. */
   async withdraw(extraction) {
     try {

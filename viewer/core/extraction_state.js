@@ -1,10 +1,15 @@
+import { formatCount } from './format.js';
+
 /**
  * What is known of the extraction on the screen. A value: every change makes a new one.
  *
  * phase     idle | waiting | running | done | failed
  * levels    the manifest's level entries known so far, coarsest first
+ * bodies    the entries of its bodies, largest first; null until they are here, and when they could not be had
  */
-export const idle = Object.freeze({ phase: 'idle', stage: '', progress: 0, levels: [], manifest: null, shown: null, problem: '' });
+export const idle = Object.freeze({
+  phase: 'idle', stage: '', progress: 0, levels: [], manifest: null, shown: null, problem: '', bodies: null, bodiesProblem: '',
+});
 
 export function started() {
   return { ...idle, phase: 'waiting', stage: 'queued' };
@@ -32,6 +37,15 @@ export function manifestCame(state, manifest) {
   return { ...state, phase: 'done', stage: '', progress: 1, manifest, levels };
 }
 
+export function bodiesCame(state, bodies) {
+  return { ...state, bodies, bodiesProblem: '' };
+}
+
+/** The surface stays: only the list of its bodies is not to be had. */
+export function bodiesFailed(state, problem) {
+  return { ...state, bodies: null, bodiesProblem: problem };
+}
+
 export function failed(state, problem) {
   return { ...state, phase: 'failed', problem };
 }
@@ -46,7 +60,7 @@ export function describe(state) {
     case 'running':
       return `${STAGES[state.stage] ?? 'Working'} …`;
     case 'done':
-      return state.manifest.empty ? 'Nothing of the survey lies in this range.' : describeBody(state.levels.at(-1));
+      return state.manifest.empty ? describeNothing(state.manifest) : describeSurface(state.levels.at(-1));
     default:
       return state.problem;
   }
@@ -55,13 +69,29 @@ export function describe(state) {
 const STAGES = {
   queued: 'Waiting for a free worker',
   load: 'Reading the survey',
+  fill: 'Filling missing samples',
   extract: 'Extracting the surface',
   simplify: 'Making levels of detail',
   encode: 'Encoding',
   certify: 'Measuring distances',
 };
 
-function describeBody({ components, genus, manifold }) {
+function describeNothing({ request }) {
+  const dropped = request?.bodies?.min_voxels > 0;
+  return dropped ? 'No body in this range is that large.' : 'Nothing of the survey lies in this range.';
+}
+
+/** One sentence for the section of the bodies. */
+export function describeBodies({ phase, manifest, bodies, bodiesProblem }) {
+  if (bodiesProblem) return `The list of bodies is not to be had: ${bodiesProblem}`;
+  if (phase === 'waiting' || phase === 'running') return 'They are listed when the last level is here.';
+  if (phase !== 'done') return 'Nothing reconstructed yet.';
+  if (manifest.empty) return 'None.';
+  if (!bodies) return 'Counting …';
+  return bodies.length === 1 ? 'One body.' : `${formatCount(bodies.length)} bodies. Click one, here or in the view, to single it out.`;
+}
+
+function describeSurface({ components, genus, manifold }) {
   const pieces = `${components} ${components === 1 ? 'piece' : 'pieces'}`;
   const tunnels = genus > 0 ? `, ${genus} ${genus === 1 ? 'tunnel' : 'tunnels'}` : '';
   return `Done: ${pieces}${tunnels}${manifold ? '' : '; not a manifold'}.`;

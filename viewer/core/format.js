@@ -24,3 +24,15 @@ export function formatShare(share) {
   if (percent > 0 && percent < 0.01) return 'under 0.01 %';
   return `${Number(percent.toPrecision(2))} %`;
 }
+
+/** An amplitude with three digits; null = there is none. */
+export function formatAmplitude(value) {
+  if (value === null || value === undefined) return '–';
+  return String(Number(value.toPrecision(3))).replace('-', '−');
+}
+
+/** A volume in cubes of a unit, metres being the one that grows to kilometres. */
+export function formatVolume(volume, unit = '') {
+  if (unit === 'm' && volume >= 1e8) return `${Number((volume / 1e9).toPrecision(3))} km³`;
+  return `${formatCount(Number(volume.toPrecision(3)))}${unit && ` ${unit}³`}`;
+}

@@ -45,3 +45,44 @@ function addTriangle(sums, positions, triangles, at) {
     sums[vertex + 2] += nz;
   }
 }
+
+/**
+ * The triangles of one body behind all the others: what is drawn differently lies in one piece.
+ *
+ * bodies   (n) the body of each vertex; a triangle's vertices are of one body.
+ * returns  {triangles (m, 3), others: how many indices come before the body's}
+ */
+export function bodyLast(triangles, bodies, body) {
+  const ordered = new Uint32Array(triangles.length);
+  let front = 0;
+  let back = triangles.length;
+  for (let at = 0; at < triangles.length; at += 3) {
+    const to = bodies[triangles[at]] === body ? (back -= 3) : (front += 3) - 3;
+    ordered[to] = triangles[at];
+    ordered[to + 1] = triangles[at + 1];
+    ordered[to + 2] = triangles[at + 2];
+  }
+  return { triangles: ordered, others: front };
+}
+
+/** The box around the vertices of one body in all parts, {low: [x, y, z], high: [x, y, z]}; null when it has none. */
+export function boundsOfBody(parts, body) {
+  const low = [Infinity, Infinity, Infinity];
+  const high = [-Infinity, -Infinity, -Infinity];
+  for (const { positions, body: bodies } of parts) {
+    for (let vertex = 0; vertex < (bodies?.length ?? 0); ++vertex) {
+      if (bodies[vertex] !== body) continue;
+      for (let axis = 0; axis < 3; ++axis) {
+        low[axis] = Math.min(low[axis], positions[3 * vertex + axis]);
+        high[axis] = Math.max(high[axis], positions[3 * vertex + axis]);
+      }
+    }
+  }
+  return low[0] <= high[0] ? { low, high } : null;
+}
+
+/** The box made so large around its middle that no side is shorter than `least`: what marks a speck has to be seen. */
+export function enlarged({ low, high }, least) {
+  const missing = low.map((end, axis) => Math.max(0, least - (high[axis] - end)) / 2);
+  return { low: low.map((end, axis) => end - missing[axis]), high: high.map((end, axis) => end + missing[axis]) };
+}

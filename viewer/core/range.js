@@ -15,11 +15,7 @@ export function rangeMistake({ low, high }) {
   return '';
 }
 
-/** The range as the request and the page's address have it. */
-export function requestOf({ low, high }) {
-  return { range: [low, high] };
-}
-
+/** The range as the page's address has it. */
 export function rangeToText({ low, high }) {
   return `${low ?? '-inf'},${high ?? 'inf'}`;
 }

@@ -1,7 +1,8 @@
 /**
  * One Draco part to flat arrays. `draco` is a ready decoder module.
  *
- * returns  {positions: Float32Array (n, 3), triangles: Uint32Array (m, 3)}
+ * returns  {positions: Float32Array (n, 3), triangles: Uint32Array (m, 3), body: Uint32Array (n) | null: its number, 0 =
+ *          the largest, reliability: Uint8Array (n) | null: 255 = measured; null where the part has none}
  * throws   Error when the bytes are not a Draco triangle mesh.
  */
 export function decodePart(draco, bytes) {
@@ -13,15 +14,20 @@ export function decodePart(draco, bytes) {
     if (decoder.GetEncodedGeometryType(buffer) !== draco.TRIANGULAR_MESH) throw new Error('not a Draco triangle mesh');
     const status = decoder.DecodeBufferToMesh(buffer, mesh);
     if (!status.ok()) throw new Error(status.error_msg());
-    return { positions: readPositions(draco, decoder, mesh), triangles: readTriangles(draco, decoder, mesh) };
+    return {
+      positions: readPositions(draco, decoder, mesh),
+      triangles: readTriangles(draco, decoder, mesh),
+      body: readNamed(draco, decoder, mesh, 'body', Uint32Array, draco.DT_UINT32),
+      reliability: readNamed(draco, decoder, mesh, 'reliability', Uint8Array, draco.DT_UINT8),
+    };
   } finally {
     for (const owned of [mesh, buffer, decoder]) draco.destroy(owned);
   }
 }
 
-/** Lets `read` fill `count` numbers of four bytes in the decoder's heap and copies them out. */
+/** Lets `read` fill `count` numbers in the decoder's heap and copies them out. */
 function copyFromHeap(draco, count, Numbers, read) {
-  const bytes = 4 * count;
+  const bytes = Numbers.BYTES_PER_ELEMENT * count;
   const pointer = draco._malloc(bytes);
   try {
     read(bytes, pointer);
@@ -41,5 +47,16 @@ function readPositions(draco, decoder, mesh) {
 function readTriangles(draco, decoder, mesh) {
   return copyFromHeap(draco, 3 * mesh.num_faces(), Uint32Array, (bytes, pointer) =>
     decoder.GetTrianglesUInt32Array(mesh, bytes, pointer),
+  );
+}
+
+/** The attribute whose metadata gives it this name, one number a point; null when there is none or it is something else. */
+function readNamed(draco, decoder, mesh, name, Numbers, type) {
+  const id = decoder.GetAttributeIdByMetadataEntry(mesh, 'name', name);
+  if (id < 0) return null;
+  const attribute = decoder.GetAttribute(mesh, id);
+  if (attribute.num_components() !== 1 || attribute.data_type() !== type) return null;
+  return copyFromHeap(draco, mesh.num_points(), Numbers, (bytes, pointer) =>
+    decoder.GetAttributeDataArrayForAllPoints(mesh, attribute, type, bytes, pointer),
   );
 }

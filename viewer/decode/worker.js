@@ -1,6 +1,6 @@
 // Decodes parts off the page's thread, in the order in which they come.
 // in   {ticket, bytes: Uint8Array, display: 12 numbers}
-// out  {ticket, positions, triangles, normals} in display coordinates, or {ticket, error}
+// out  {ticket, positions, triangles, normals, body, reliability} in display coordinates, or {ticket, error}
 import createDraco from 'draco3d/draco_decoder_nodejs.js';
 
 import { reversedTriangles, transformPositions, vertexNormals } from '../core/mesh.js';
@@ -20,14 +20,15 @@ function prepare(draco, { bytes, display }) {
   const positions = transformPositions(decoded.positions, display);
   // The way to the display is a mirror: seen there, the triangles turn the other way round.
   const triangles = reversedTriangles(decoded.triangles);
-  return { positions, triangles, normals: vertexNormals(positions, triangles) };
+  return { ...decoded, positions, triangles, normals: vertexNormals(positions, triangles) };
 }
 
 self.onmessage = async ({ data }) => {
   try {
     const { draco } = await ready;
     const mesh = prepare(draco, data);
-    self.postMessage({ ticket: data.ticket, ...mesh }, Object.values(mesh).map((array) => array.buffer));
+    const arrays = Object.values(mesh).filter((array) => array !== null);
+    self.postMessage({ ticket: data.ticket, ...mesh }, arrays.map(({ buffer }) => buffer));
   } catch (error) {
     self.postMessage({ ticket: data.ticket, error: String(error?.message ?? error) });
   }

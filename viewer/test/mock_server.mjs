@@ -5,12 +5,18 @@
  *     GEOSIS=../build/release/geosis node test/mock_server.mjs [FILE.sgy ...]
  */
 import { execFile } from 'node:child_process';
+import { createHash } from 'node:crypto';
 import { createServer } from 'node:http';
 import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import { basename, extname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { promisify } from 'node:util';
+
+import { decodePart } from '../decode/draco.js';
+import { dracoDecoder, encodePart } from './draco_encoder.mjs';
+import { documentOf, findBodies, keepBodies } from './mock_bodies.mjs';
+import { reliabilityOf, tracesOf } from './mock_fill.mjs';
 
 const run = promisify(execFile);
 const pause = (ms) => new Promise((resolve) => setTimeout(resolve, ms));
@@ -30,13 +36,17 @@ class Mock {
   volumes = new Map();
   extractions = new Map();
 
+  refusesBodies = false;
+
   constructor(geosis, folder, levelDelayMs) {
     Object.assign(this, { geosis, folder, levelDelayMs });
   }
 
-  async addVolume(name, bytes) {
+  /** whole   the same survey without holes, which filling then gives. */
+  async addVolume(name, bytes, whole = bytes) {
     const path = join(this.folder, `${this.volumes.size}.sgy`);
     await writeFile(path, bytes);
+    await writeFile(`${path}.whole`, whole);
     const document = JSON.parse(await this.#geosis('info', path));
     this.volumes.set(document.id, { path, document: { ...document, name, state: 'ready' } });
     return this.volumes.get(document.id).document;
@@ -44,12 +54,19 @@ class Mock {
 
   async extract(volumeId, request) {
     const volume = this.#find(this.volumes, volumeId);
+    const id = createHash('sha256').update(JSON.stringify([volumeId, request])).digest('hex');
+    if (!this.extractions.has(id)) this.extractions.set(id, await this.#compute(volume, id, request));
+    return { id, volume: volumeId, state: 'done', request };
+  }
+
+  async #compute(volume, id, request) {
+    const isFilled = (request.missing?.method ?? 'none') !== 'none';
+    const input = isFilled ? `${volume.path}.whole` : volume.path;
     const ends = request.range.map((end, side) => String(end ?? ['-inf', 'inf'][side]));
-    const out = join(this.folder, `${volumeId.slice(0, 8)}_${ends.join('_')}`);
-    await this.#geosis('reconstruct', volume.path, '--range', ...ends, '--out', out);
+    const out = join(this.folder, id);
+    await this.#geosis('reconstruct', input, '--format', 'segy', '--range', ...ends, '--out', out);
     const manifest = JSON.parse(await readFile(join(out, 'manifest.json'), 'utf8'));
-    this.extractions.set(manifest.id, { out, manifest });
-    return { id: manifest.id, volume: volumeId, state: 'done', request: manifest.request };
+    return withBodies(out, { ...manifest, id, request }, isFilled ? await tracesOf(volume) : null);
   }
 
   volume(id) {
@@ -73,6 +90,32 @@ class Mock {
       throw new Refusal(422, code, message);
     }
   }
+}
+
+/** Gives the levels their attributes, leaves out what is too small, and lists the bodies. */
+async function withBodies(out, manifest, isThere) {
+  const levels = await Promise.all(manifest.levels.map(async (entry) => ({
+    ...entry, parts: await Promise.all(entry.parts.map(async ({ url }) => decodePart(dracoDecoder, await readFile(join(out, url))))),
+  })));
+  if (levels.length === 0) return { manifest, parts: new Map(), bodies: [] };
+  if (isThere) for (const part of levels.flatMap(({ parts }) => parts)) part.reliability = reliabilityOf(part, isThere);
+  const least = manifest.request.bodies?.min_voxels ?? 0;
+  const kept = findBodies(levels).filter(({ volume }) => volume >= least);
+  const isKept = (body) => body < kept.length;
+  const parts = new Map(levels.map((level) => [level.level, level.parts.map((part) => keepBodies(part, isKept))]));
+  const left = manifest.levels.map((entry) => ({
+    ...entry, components: kept.length, triangles: parts.get(entry.level).reduce((sum, { triangles }) => sum + triangles.length / 3, 0),
+  }));
+  const empty = kept.length === 0;
+  return {
+    manifest: { ...manifest, empty, levels: empty ? [] : left },
+    parts,
+    bodies: kept.map((body) => documentOf(body, manifest.request.range[0] ?? 0)),
+  };
+}
+
+function encodeWithAttributes({ body, reliability, ...mesh }) {
+  return encodePart(mesh, reliability ? { reliability, body } : { body });
 }
 
 /** Counts of the samples of a file that geosis synth wrote: big-endian float32 after trace headers of 240 bytes. */
@@ -102,11 +145,11 @@ function sendJson(response, status, document) {
   response.writeHead(status, { 'Content-Type': type }).end(JSON.stringify(document));
 }
 
-async function sendStream(mock, response, { out, manifest }) {
+async function sendStream(mock, response, { manifest, parts }) {
   response.writeHead(200, { 'Content-Type': `multipart/mixed; boundary=${BOUNDARY}` });
   for (const level of [...manifest.levels].reverse()) {
-    for (const [number, part] of level.parts.entries()) {
-      const bytes = await readFile(join(out, part.url));
+    for (const [number, part] of parts.get(level.level).entries()) {
+      const bytes = encodeWithAttributes(part);
       response.write(`--${BOUNDARY}\r\nContent-Type: model/vnd.google.draco\r\nX-Geosis-Level: ${level.level}\r\n` +
         `X-Geosis-Part: ${number}\r\nX-Geosis-Parts: ${level.parts.length}\r\nContent-Length: ${bytes.length}\r\n\r\n`);
       response.write(bytes);
@@ -131,6 +174,11 @@ async function sendEvents(mock, response, { manifest }) {
   response.end();
 }
 
+function sendBodies(mock, response, { bodies }) {
+  if (mock.refusesBodies) throw new Refusal(503, 'unavailable', 'the bodies are being counted');
+  sendJson(response, 200, { bodies });
+}
+
 async function sendPage(response, path) {
   const file = path === '/' ? 'index.html' : basename(path);
   const bytes = await readFile(DIST + file).catch(() => {
@@ -151,6 +199,7 @@ const CALLS = [
     sendJson(response, 202, await mock.extract(id, JSON.parse(await readBody(request))))],
   ['GET', /^\/v1\/extractions\/(\w+)\/stream$/, async (mock, { response, id }) => sendStream(mock, response, mock.extraction(id))],
   ['GET', /^\/v1\/extractions\/(\w+)\/events$/, async (mock, { response, id }) => sendEvents(mock, response, mock.extraction(id))],
+  ['GET', /^\/v1\/extractions\/(\w+)\/bodies$/, async (mock, { response, id }) => sendBodies(mock, response, mock.extraction(id))],
   ['DELETE', /^\/v1\/extractions\/(\w+)$/, async (mock, { response }) => response.writeHead(204).end()],
   ['GET', /^\/[\w.]*$/, async (mock, { response, path }) => sendPage(response, path)],
 ];
@@ -195,7 +244,9 @@ if (process.argv[1] === fileURLToPath(import.meta.url)) {
   const geosis = process.env.GEOSIS ?? 'geosis';
   const { url, mock } = await startMock({ geosis, port: Number(process.env.PORT ?? 0), levelDelayMs: 400 });
   const files = process.argv.slice(2);
-  if (files.length === 0) await mock.addVolume('sample.sgy', await synthesize(geosis));
+  if (files.length === 0) {
+    await mock.addVolume('sample.sgy', await synthesize(geosis), await synthesize(geosis, '--missing', 'none'));
+  }
   for (const file of files) await mock.addVolume(basename(file), await readFile(file));
   console.log(`listening on ${url}`);
 }

@@ -1,9 +1,13 @@
 import {
-  Color, DirectionalLight, Group, HemisphereLight, PerspectiveCamera, Scene, Spherical, Vector3, WebGLRenderer,
+  Box3, Color, DirectionalLight, Group, HemisphereLight, PerspectiveCamera, Raycaster, Scene, Sphere,
+  Spherical, Vector2, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 
 const FIELD_OF_VIEW = 38;
+const CLICK_PIXELS = 5;
+/** Distance of a close-up in radii of what is looked at. */
+const CLOSE_UP = 6;
 
 /** Canvas, camera and light. Draws when something changed, never otherwise. */
 export class Stage {
@@ -42,6 +46,27 @@ export class Stage {
     this.#afterDraw.push(action);
   }
 
+  /** Calls action(raycaster) for each click or tap that does not turn the view. */
+  onClick(action) {
+    const canvas = this.#renderer.domElement;
+    let pressed = null;
+    canvas.addEventListener('pointerdown', (event) => {
+      pressed = event.isPrimary && event.button === 0 ? event : null;
+    });
+    canvas.addEventListener('pointerup', (event) => {
+      const isClick = pressed && Math.hypot(event.clientX - pressed.clientX, event.clientY - pressed.clientY) < CLICK_PIXELS;
+      if (isClick) action(this.#rayAt(event));
+      pressed = null;
+    });
+  }
+
+  #rayAt({ clientX, clientY }) {
+    const { left, top, width, height } = this.#renderer.domElement.getBoundingClientRect();
+    const raycaster = new Raycaster();
+    raycaster.setFromCamera(new Vector2((2 * (clientX - left)) / width - 1, 1 - (2 * (clientY - top)) / height), this.#camera);
+    return raycaster;
+  }
+
   /** Looks at a box of these extents around the origin from south-west, from above. */
   frame({ horizontal, vertical }) {
     this.#radius = 0.5 * Math.hypot(horizontal, horizontal, vertical);
@@ -55,6 +80,16 @@ export class Stage {
     this.#camera.position.set(-0.52, 0.62, 0.78).setLength(distance);
     this.#camera.updateProjectionMatrix();
     this.#controls.target.set(0, 0, 0);
+    this.#controls.update();
+    this.draw();
+  }
+
+  /** Goes near an object of the world, from the side from which it is seen now. */
+  lookAt(object) {
+    const { center, radius } = new Box3().setFromObject(object).getBoundingSphere(new Sphere());
+    const direction = new Vector3().subVectors(this.#camera.position, this.#controls.target).normalize();
+    this.#controls.target.copy(center);
+    this.#camera.position.copy(center).addScaledVector(direction, Math.max(CLOSE_UP * radius, 3 * this.#camera.near));
     this.#controls.update();
     this.draw();
   }

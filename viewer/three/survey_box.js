@@ -14,11 +14,34 @@ export class SurveyBox extends LineSegments {
 
   place(dims, display) {
     const corners = cornersOf(dims).map((corner) => toDisplay(display, corner));
-    const positions = new Float32Array(BOX_EDGES.flat().flatMap((corner) => corners[corner]));
-    this.geometry.dispose();
-    this.geometry = new BufferGeometry();
-    this.geometry.setAttribute('position', new BufferAttribute(positions, 3));
+    replaceLines(this, BOX_EDGES.flat().flatMap((corner) => corners[corner]));
   }
+}
+
+/** The outline of the body that is singled out, so that a small one is found. */
+export class BodyBox extends LineSegments {
+  constructor() {
+    super(new BufferGeometry(), new LineBasicMaterial());
+    this.visible = false;
+  }
+
+  set color(color) {
+    this.material.color.set(color);
+  }
+
+  /** bounds   {low, high} on the display, or null for none. */
+  place(bounds) {
+    this.visible = bounds !== null;
+    if (!bounds) return;
+    const corner = (number) => [0, 1, 2].map((axis) => ((number >> axis) & 1 ? bounds.high : bounds.low)[axis]);
+    replaceLines(this, BOX_EDGES.flat().flatMap(corner));
+  }
+}
+
+function replaceLines(lines, positions) {
+  lines.geometry.dispose();
+  lines.geometry = new BufferGeometry();
+  lines.geometry.setAttribute('position', new BufferAttribute(new Float32Array(positions), 3));
 }
 
 /** The axes' names and numbers as text over the canvas, so that they stay sharp and follow the page's colours. */

@@ -1,0 +1,125 @@
+import { describeBody, toggled } from '../core/bodies.js';
+import { COLOURINGS, colouringFor, colouringsOf, swatchColour } from '../core/colours.js';
+import { idle } from '../core/extraction_state.js';
+import { boundsOfBody, enlarged } from '../core/mesh.js';
+import { LevelView } from '../three/level_view.js';
+import { BodyBox } from '../three/survey_box.js';
+import { BodiesSection } from './bodies_section.js';
+
+/** Shortest side of the box around a body, as a share of the survey's extent. */
+const LEAST_BOX = 0.02;
+
+/**
+ * How the surface looks: its colours, and the body that is singled out in the view and in the table.
+ *
+ * elements     {colouring, legend, selection, bodies}
+ * onColouring  (name) when somebody chose another colouring.
+ */
+export class Appearance {
+  #stage;
+  #elements;
+  #level = new LevelView();
+  #box = new BodyBox();
+  #section;
+  #wanted = 'plain';
+  #plain = '#cf8a35';
+  #selected = null;
+  #state = idle;
+  #unit = '';
+  #leastBox = 0;
+
+  constructor(stage, elements, { onColouring }) {
+    this.#stage = stage;
+    this.#elements = elements;
+    stage.world.add(this.#level, this.#box);
+    // Before the first level is here, the view still shows another extraction's bodies.
+    stage.onClick((raycaster) => this.#state.shown !== null && this.#select(this.#level.bodyAt(raycaster)));
+    this.#section = new BodiesSection(elements.bodies, { onChoose: (body) => this.#select(body) });
+    elements.selection.querySelector('#release').addEventListener('click', () => this.#select(null));
+    elements.selection.querySelector('#zoom-to').addEventListener('click', () => stage.lookAt(this.#box));
+    addEventListener('keydown', ({ key }) => key === 'Escape' && this.#select(null));
+    elements.colouring.addEventListener('change', ({ target }) => {
+      this.colouring = target.value;
+      onColouring(target.value);
+    });
+  }
+
+  /** What is wanted; where its attribute is absent the surface is plain. */
+  set colouring(name) {
+    this.#wanted = COLOURINGS.includes(name) ? name : 'plain';
+    this.#recolour();
+  }
+
+  set wireframe(on) {
+    this.#level.wireframe = on;
+    this.#stage.draw();
+  }
+
+  /** Unit of lengths in the survey, and its horizontal extent on the display. */
+  placeIn(unit, extent) {
+    this.#unit = unit;
+    this.#leastBox = LEAST_BOX * extent;
+  }
+
+  /** '#rrggbb' of the measured surface and of the filled one, and of lines. */
+  set theme({ plain, pale, line }) {
+    this.#plain = plain;
+    this.#level.look = { plain, pale };
+    this.#box.color = line;
+    this.#recolour();
+  }
+
+  /** Draws these parts; a selection stays, for bodies have the same numbers at every level. */
+  draw(parts) {
+    this.#level.replace(parts);
+    this.#placeBox();
+    this.#recolour();
+  }
+
+  show(state) {
+    const isNew = state.phase === 'waiting' || state.phase === 'idle';
+    this.#state = state;
+    if (isNew && this.#selected !== null) this.#select(null);
+    if (state.phase === 'idle' || state.manifest?.empty) this.draw([]);
+    this.#showSection();
+  }
+
+  /** The same body again, or none, lets it go. */
+  #select(body) {
+    const selected = body === null ? null : toggled(this.#selected, body);
+    if (selected === this.#selected) return;
+    this.#selected = selected;
+    this.#level.selected = selected;
+    this.#placeBox();
+    this.#showSection();
+    this.#stage.draw();
+  }
+
+  #placeBox() {
+    const bounds = this.#selected === null ? null : boundsOfBody(this.#level.parts, this.#selected);
+    this.#box.place(bounds && enlarged(bounds, this.#leastBox));
+  }
+
+  #recolour() {
+    const available = colouringsOf(this.#level.parts);
+    const colouring = colouringFor(this.#wanted, available);
+    this.#level.look = { colouring };
+    for (const input of this.#elements.colouring.querySelectorAll('input')) {
+      input.checked = input.value === colouring;
+      input.parentElement.hidden = !available.includes(input.value);
+    }
+    this.#elements.colouring.hidden = available.length < 2;
+    this.#elements.legend.hidden = colouring !== 'reliability';
+    this.#showSection();
+    this.#stage.draw();
+  }
+
+  #showSection() {
+    const colouring = colouringFor(this.#wanted, colouringsOf(this.#level.parts));
+    this.#section.show(this.#state, this.#selected, (body) => swatchColour(colouring, body, this.#plain));
+    const entry = this.#state.bodies?.find(({ body }) => body === this.#selected);
+    const { selection } = this.#elements;
+    selection.hidden = this.#selected === null;
+    selection.querySelector('span').textContent = entry ? describeBody(entry, this.#unit) : `Body ${this.#selected}`;
+  }
+}

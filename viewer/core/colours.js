@@ -1,0 +1,108 @@
+/**
+ * Which colour each vertex has. Colours are '#rrggbb' where the page uses them, too, and linear RGB for the renderer.
+ *
+ * plain        one colour for all
+ * bodies       one for each body
+ * reliability  the plain one where samples were measured, pale where they were filled in
+ */
+export const COLOURINGS = Object.freeze(['plain', 'bodies', 'reliability']);
+
+/** Reliability of what was measured. */
+export const MEASURED = 255;
+
+/**
+ * The largest bodies' colours. Chosen so that any two stay apart (OKLab, lightness counted for less because shading
+ * plays with it) for full colour vision, protanopia, deuteranopia and tritanopia, and from the sky of both themes.
+ */
+const PALETTE = Object.freeze(['#cf8a35', '#377ee3', '#9cc57a', '#9260b0', '#3abdee', '#924f1b', '#4d7b7c', '#ee6aa6']);
+
+/** Each further round through the palette is mixed with white or black, so that neighbours in the list still differ. */
+const ROUNDS = Object.freeze([
+  { towards: 0, share: 0 },
+  { towards: 1, share: 0.3 },
+  { towards: 0, share: 0.28 },
+]);
+
+/** The palette in all its rounds, for the page and for the renderer. */
+const COLOURS = Object.freeze(ROUNDS.flatMap(({ towards, share }) =>
+  PALETTE.map((colour) => hexOf(channelsOf(colour).map((channel) => channel + share * (towards - channel)))),
+));
+const LINEAR_COLOURS = Object.freeze(COLOURS.map(linearOf));
+
+/** A body's colour, the same for the same number always. */
+export function bodyColour(body) {
+  return COLOURS[body % COLOURS.length];
+}
+
+/** The colour of a body in a colouring. */
+export function swatchColour(colouring, body, plain) {
+  return colouring === 'bodies' ? bodyColour(body) : plain;
+}
+
+/** The colourings that these parts have the attributes for. */
+export function colouringsOf(parts) {
+  const has = { plain: true, bodies: parts.some(({ body }) => body), reliability: parts.some(({ reliability }) => reliability) };
+  return COLOURINGS.filter((name) => has[name]);
+}
+
+/** The colouring to use when this one is wanted. */
+export function colouringFor(wanted, available) {
+  return available.includes(wanted) ? wanted : 'plain';
+}
+
+/**
+ * Linear RGB of each vertex, (n, 3) float32; null in the plain colouring, where the material's own colour is enough.
+ *
+ * part        {positions, body: (n) uint32 | null, reliability: (n) uint8 | null}; without reliability all was measured
+ * plain, pale '#rrggbb' of what was measured and of what was filled in
+ */
+export function vertexColours({ positions, body, reliability }, { colouring, plain, pale }) {
+  if (colouring === 'plain') return null;
+  const colours = new Float32Array(positions.length);
+  if (colouring === 'bodies' && body) paintBodies(colours, body);
+  else if (colouring === 'reliability' && reliability) paintReliability(colours, reliability, linearOf(plain), linearOf(pale));
+  else paintAll(colours, linearOf(plain));
+  return colours;
+}
+
+/** How far each vertex was filled in, 0 = measured ... 255; null where there is nothing to tell. */
+export function filledOf({ reliability }, colouring) {
+  return colouring === 'reliability' && reliability ? reliability.map((value) => MEASURED - value) : null;
+}
+
+function paintBodies(colours, body) {
+  for (let vertex = 0, at = 0; vertex < body.length; ++vertex, at += 3) {
+    const [red, green, blue] = LINEAR_COLOURS[body[vertex] % LINEAR_COLOURS.length];
+    colours[at] = red;
+    colours[at + 1] = green;
+    colours[at + 2] = blue;
+  }
+}
+
+function paintReliability(colours, reliability, plain, pale) {
+  const shades = Array.from({ length: MEASURED + 1 }, (_, value) =>
+    plain.map((channel, at) => (value * channel + (MEASURED - value) * pale[at]) / MEASURED));
+  for (let vertex = 0, at = 0; vertex < reliability.length; ++vertex, at += 3) {
+    const [red, green, blue] = shades[reliability[vertex]];
+    colours[at] = red;
+    colours[at + 1] = green;
+    colours[at + 2] = blue;
+  }
+}
+
+function paintAll(colours, colour) {
+  for (let at = 0; at < colours.length; at += 3) colours.set(colour, at);
+}
+
+/** '#rrggbb' to the three numbers in [0, 1] that light adds up in. */
+export function linearOf(hex) {
+  return channelsOf(hex).map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
+}
+
+function channelsOf(hex) {
+  return [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
+}
+
+function hexOf(channels) {
+  return `#${channels.map((channel) => Math.round(255 * channel).toString(16).padStart(2, '0')).join('')}`;
+}

@@ -1,0 +1,39 @@
+/**
+ * What the page asks for: a range and the choices beside it.
+ *
+ * fill       none | linear | rbf: what happens to missing traces inside the survey
+ * minVoxels  bodies smaller than this are left out; 0 keeps all
+ */
+export const FILLS = Object.freeze(['none', 'linear', 'rbf']);
+export const noChoices = Object.freeze({ fill: 'none', minVoxels: 0 });
+
+const ATTRIBUTES = Object.freeze(['reliability', 'body']);
+
+/** The request's JSON. */
+export function requestOf({ low, high }, { fill, minVoxels } = noChoices) {
+  const request = { range: [low, high], missing: { method: fill }, attributes: ATTRIBUTES };
+  return minVoxels > 0 ? { ...request, bodies: { min_voxels: minVoxels } } : request;
+}
+
+/** Whether there is anything to fill in a volume. */
+export function hasMissing(volume) {
+  return (volume?.missing?.samples ?? 0) > 0;
+}
+
+/** The count that somebody typed; 0 when the field is empty, undefined when it is not a count. */
+export function parseMinVoxels(text) {
+  const digits = (text ?? '').replace(/[\s\u202f]/g, '');
+  if (digits === '') return 0;
+  return /^\d{1,15}$/.test(digits) ? Number(digits) : undefined;
+}
+
+/** The choices that an address remembers; what it does not say, or says wrongly, is the default. */
+export function choicesFromAddress(parameters) {
+  const fill = parameters.get('missing');
+  return { fill: FILLS.includes(fill) ? fill : 'none', minVoxels: parseMinVoxels(parameters.get('min_voxels')) ?? 0 };
+}
+
+/** What the address is to remember: name -> text, null for a default. */
+export function choicesToAddress({ fill, minVoxels }) {
+  return { missing: fill === 'none' ? null : fill, min_voxels: minVoxels > 0 ? String(minVoxels) : null };
+}

@@ -1,0 +1,221 @@
+import assert from 'node:assert/strict';
+import { describe, it } from 'node:test';
+
+import { bodiesTable, describeBody, describeSmaller, toggled } from '../core/bodies.js';
+import {
+  bodyColour, colouringFor, colouringsOf, filledOf, linearOf, swatchColour, vertexColours,
+} from '../core/colours.js';
+import {
+  bodiesCame, bodiesFailed, describe as sentenceOf, describeBodies, idle, manifestCame, progressed, started,
+} from '../core/extraction_state.js';
+import { formatAmplitude, formatVolume } from '../core/format.js';
+import { bodyLast, boundsOfBody, enlarged } from '../core/mesh.js';
+import { choicesFromAddress, choicesToAddress, hasMissing, noChoices, parseMinVoxels, requestOf } from '../core/request.js';
+import { colourDifference, luminanceOf, VISIONS } from './colour_vision.mjs';
+
+const entry = (body, more = {}) => ({
+  body, voxels: 1234, volume: null, genus: 0, cavities: 0, amplitude: { mean: 0.5678, min: 0.5, max: 0.75 }, interpolated_share: 0, ...more,
+});
+
+describe('request', () => {
+  it('asks for both attributes and leaves missing traces open', () => {
+    assert.deepEqual(requestOf({ low: 0.5, high: null }), {
+      range: [0.5, null], missing: { method: 'none' }, attributes: ['reliability', 'body'],
+    });
+  });
+
+  it('has the way of filling and the smallest body', () => {
+    const { missing, bodies } = requestOf({ low: null, high: 1 }, { fill: 'rbf', minVoxels: 20 });
+    assert.deepEqual([missing, bodies], [{ method: 'rbf' }, { min_voxels: 20 }]);
+  });
+
+  it('comes back from the page address', () => {
+    for (const choices of [noChoices, { fill: 'linear', minVoxels: 0 }, { fill: 'rbf', minVoxels: 7 }]) {
+      const kept = Object.entries(choicesToAddress(choices)).filter(([, value]) => value !== null);
+      assert.deepEqual(choicesFromAddress(new URLSearchParams(kept)), choices);
+    }
+  });
+
+  it('takes the default for what an address says wrongly', () => {
+    assert.deepEqual(choicesFromAddress(new URLSearchParams('missing=magic&min_voxels=-3')), noChoices);
+  });
+
+  it('reads counts, and refuses what is none', () => {
+    assert.equal(parseMinVoxels(' 1\u202f200 '), 1200);
+    assert.equal(parseMinVoxels(''), 0);
+    for (const text of ['-1', '2.5', 'few', '1e3']) assert.equal(parseMinVoxels(text), undefined, text);
+  });
+
+  it('knows surveys with something to fill', () => {
+    assert.ok(hasMissing({ missing: { samples: 1, traces: 0 } }));
+    assert.ok(!hasMissing({ missing: { samples: 0, traces: 0 } }));
+    assert.ok(!hasMissing(null));
+  });
+});
+
+describe('body colours', () => {
+  const SKIES = { light: '#e9ecec', dark: '#101417' };
+  const numbers = (count) => [...Array(count).keys()];
+
+  it('are the same for the same number, and differ from those before and after', () => {
+    for (const body of numbers(200)) {
+      assert.match(bodyColour(body), /^#[0-9a-f]{6}$/);
+      assert.equal(bodyColour(body), bodyColour(body));
+      for (const later of [1, 2, 3, 4, 5, 6, 7]) assert.notEqual(bodyColour(body), bodyColour(body + later));
+    }
+    assert.match(bodyColour(2 ** 32 - 1), /^#[0-9a-f]{6}$/);
+  });
+
+  it('of the eight largest bodies stay apart for every kind of colour vision', () => {
+    for (const vision of Object.keys(VISIONS)) {
+      for (const a of numbers(8)) {
+        for (const b of numbers(a)) assert.ok(colourDifference(bodyColour(a), bodyColour(b), vision) > 0.06, `${vision}: ${a}, ${b}`);
+      }
+    }
+  });
+
+  it('stand out from the sky of both themes', () => {
+    for (const [theme, sky] of Object.entries(SKIES)) {
+      for (const body of numbers(24)) {
+        const [darker, brighter] = [luminanceOf(sky), luminanceOf(bodyColour(body))].sort((a, b) => a - b);
+        assert.ok((brighter + 0.05) / (darker + 0.05) > 1.3, `${theme}: ${body}`);
+      }
+    }
+  });
+});
+
+describe('vertex colours', () => {
+  const part = { positions: new Float32Array(9), body: Uint32Array.of(0, 3, 0), reliability: Uint8Array.of(255, 0, 51) };
+  const look = { plain: '#ffffff', pale: '#000000' };
+  const colourOf = (colours, vertex) => [...colours.subarray(3 * vertex, 3 * vertex + 3)];
+  const near = (actual, expected) => actual.forEach((value, at) => assert.ok(Math.abs(value - expected[at]) < 1e-6));
+
+  it('are left to the material in the plain colouring', () => {
+    assert.equal(vertexColours(part, { ...look, colouring: 'plain' }), null);
+  });
+
+  it('are those of the bodies', () => {
+    const colours = vertexColours(part, { ...look, colouring: 'bodies' });
+    for (const [vertex, body] of part.body.entries()) near(colourOf(colours, vertex), linearOf(bodyColour(body)));
+  });
+
+  it('fade from plain to pale with the reliability', () => {
+    const colours = vertexColours(part, { ...look, colouring: 'reliability' });
+    for (const [vertex, share] of [1, 0, 0.2].entries()) near(colourOf(colours, vertex), [share, share, share]);
+    assert.deepEqual([...filledOf(part, 'reliability')], [0, 255, 204]);
+  });
+
+  it('are plain in a part where everything was measured', () => {
+    const measured = { ...part, reliability: null };
+    near([...vertexColours(measured, { ...look, colouring: 'reliability' })], new Array(9).fill(1));
+    assert.equal(filledOf(measured, 'reliability'), null);
+    assert.equal(filledOf(part, 'bodies'), null);
+  });
+
+  it('are offered where the parts have what they need', () => {
+    const bare = { ...part, body: null, reliability: null };
+    assert.deepEqual(colouringsOf([bare, part]), ['plain', 'bodies', 'reliability']);
+    assert.deepEqual(colouringsOf([{ ...part, reliability: null }]), ['plain', 'bodies']);
+    assert.deepEqual(colouringsOf([]), ['plain']);
+    assert.equal(colouringFor('reliability', ['plain', 'bodies']), 'plain');
+  });
+
+  it('are the swatches of the table', () => {
+    assert.equal(swatchColour('bodies', 4, '#111111'), bodyColour(4));
+    assert.equal(swatchColour('reliability', 4, '#111111'), '#111111');
+  });
+});
+
+describe('table of bodies', () => {
+  const many = Array.from({ length: 1300 }, (_, body) => entry(body));
+
+  it('has the largest bodies and counts the others', () => {
+    const { rows, smaller } = bodiesTable(many, null);
+    assert.deepEqual(rows.map(({ body }) => body), [...Array(50).keys()]);
+    assert.equal(describeSmaller(smaller), 'and 1\u202f250 smaller ones');
+    assert.equal(describeSmaller(1), 'and 1 smaller one');
+    assert.equal(describeSmaller(0), '');
+  });
+
+  it('has the selected body wherever it stands', () => {
+    const { rows, smaller } = bodiesTable(many, 900);
+    assert.deepEqual(rows.filter(({ isSelected }) => isSelected).map(({ body }) => body), [900]);
+    assert.equal(rows.length + smaller, many.length);
+    assert.equal(bodiesTable(many, 3).rows.length, 50);
+  });
+
+  it('says what is not known', () => {
+    const { rows } = bodiesTable([entry(0, { amplitude: null, voxels: 0, genus: null }), entry(1, { genus: 2, interpolated_share: 0.125 })], null);
+    assert.deepEqual(rows[0].cells, ['0', '–', '–', '0 %']);
+    assert.deepEqual(rows[1].cells, ['1\u202f234', '0.568', '2', '13 %']);
+  });
+
+  it('lets the selected body go when it is clicked again', () => {
+    assert.equal(toggled(null, 0), 0);
+    assert.equal(toggled(0, 3), 3);
+    assert.equal(toggled(3, 3), null);
+  });
+
+  it('tells in a line what it has no room for', () => {
+    assert.equal(describeBody(entry(2)), 'Body 2: 1\u202f234 samples, amplitude 0.5 to 0.75');
+    const full = entry(0, { voxels: 1, volume: 2.5e9, genus: 1, cavities: 2, interpolated_share: 0.5 });
+    assert.equal(describeBody(full, 'm'), 'Body 0: 1 sample, 2.5 km³, amplitude 0.5 to 0.75, 1 tunnel, 2 cavities, 50 % filled in');
+  });
+});
+
+describe('numbers of bodies', () => {
+  it('are written for people', () => {
+    assert.equal(formatAmplitude(-0.012345), '−0.0123');
+    assert.equal(formatAmplitude(0), '0');
+    assert.equal(formatVolume(1234.5, 'm'), '1\u202f230 m³');
+    assert.equal(formatVolume(8), '8');
+  });
+});
+
+describe('bodies in the extraction state', () => {
+  const done = manifestCame(started(), { levels: [{ level: 0, components: 1, genus: 0, manifold: true }], empty: false });
+
+  it('are counted after the last level', () => {
+    assert.match(describeBodies(idle), /Nothing/);
+    assert.match(describeBodies(started()), /when the last level/);
+    assert.match(describeBodies(done), /Counting/);
+    assert.match(describeBodies(bodiesCame(done, [entry(0), entry(1)])), /^2 bodies/);
+    assert.equal(describeBodies(bodiesCame(done, [entry(0)])), 'One body.');
+  });
+
+  it('may fail without the surface', () => {
+    const state = bodiesFailed(done, 'no such page');
+    assert.equal(state.phase, 'done');
+    assert.match(describeBodies(state), /no such page/);
+  });
+
+  it('are what was asked to be large', () => {
+    const nothing = { levels: [], empty: true, request: { bodies: { min_voxels: 5 } } };
+    assert.match(sentenceOf(manifestCame(started(), nothing)), /that large/);
+  });
+
+  it('come after filling, which has a name', () => {
+    assert.equal(sentenceOf(progressed(started(), { stage: 'fill', progress: 0.1 })), 'Filling missing samples …');
+  });
+});
+
+describe('one body of a mesh', () => {
+  const triangles = Uint32Array.of(0, 1, 2, 3, 4, 5, 2, 1, 0);
+  const body = Uint32Array.of(7, 7, 7, 8, 8, 8);
+  const positions = Float32Array.from({ length: 18 }, (_, at) => at);
+
+  it('lies behind the others, each triangle as it was', () => {
+    const { triangles: ordered, others } = bodyLast(triangles, body, 7);
+    assert.deepEqual([...ordered.subarray(0, others)], [3, 4, 5]);
+    assert.deepEqual([...ordered.subarray(others)].sort(), [0, 0, 1, 1, 2, 2]);
+    assert.equal(bodyLast(triangles, body, 9).others, triangles.length);
+  });
+
+  it('has a box, which is never too small to be seen', () => {
+    const bounds = boundsOfBody([{ positions, body }, { positions: new Float32Array(3), body: null }], 8);
+    assert.deepEqual(bounds, { low: [9, 10, 11], high: [15, 16, 17] });
+    assert.deepEqual(enlarged(bounds, 10), { low: [7, 8, 9], high: [17, 18, 19] });
+    assert.deepEqual(enlarged(bounds, 1), bounds);
+    assert.equal(boundsOfBody([{ positions, body }], 1), null);
+  });
+});

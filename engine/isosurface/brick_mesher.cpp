@@ -39,17 +39,19 @@ void BrickMesher::fill_cells(int a, int b) {
 }
 
 void BrickMesher::fill_cell(int sheet, int a, int b, int c) {
-  const Mc33Patch& patch = patch_of(sheet, a, b, c);
+  const Mc33Patch patch = patch_of(sheet, a, b, c);
   const bool turned = !field_.sheets().sheet[sheet].body_is_above();  // the table's triangles look below the level
   for (int n = 0; n < patch.count; ++n) {
     const std::uint8_t* edges = kMc33Corners + patch.first + 3 * n;
-    add_triangle(vertices_.on_edge(sheet, edges[0], a, b, c), vertices_.on_edge(sheet, edges[1], a, b, c),
-                 vertices_.on_edge(sheet, edges[2], a, b, c), turned);
+    const auto number = [&](int m) {
+      return edges[m] == kInnerVertex ? inner_vertex_ : vertices_.on_edge(sheet, edges[m], a, b, c);
+    };
+    add_triangle(number(0), number(1), number(2), turned);
   }
 }
 
 /// Signs first; faces only where they are ambiguous; the interior only where a tunnel is possible.
-const Mc33Patch& BrickMesher::patch_of(int sheet, int a, int b, int c) const {
+Mc33Patch BrickMesher::patch_of(int sheet, int a, int b, int c) {
   const std::uint8_t above = field_.corners_above(sheet, a, b, c);
   const Mc33Mask& mask = kMc33Masks[above];
   const Mc33State* state = kMc33States + mask.first_state;
@@ -62,7 +64,42 @@ const Mc33Patch& BrickMesher::patch_of(int sheet, int a, int b, int c) const {
   const InteriorJoint joint = interior_joint(values, above);
   if (!joint.joined || state->region[joint.first] == state->region[joint.second]) return state->patch;
   const std::int16_t tunnel = joint.above ? state->tunnel_above : state->tunnel_below;
-  return tunnel == kNoTunnel ? state->patch : kMc33Tunnels[tunnel];
+  return tunnel == kNoTunnel ? state->patch : tunnel_patch(kMc33Tunnels[tunnel], sheet, a, b, c);
+}
+
+/// The first patch of the tunnel that does not cut itself where its vertices lie; the first of all when each does,
+/// which takes crossings that are not those of the function that decided the cell (sampled mode). Makes the vertex
+/// inside.
+Mc33Patch BrickMesher::tunnel_patch(const Mc33Tunnel& tunnel, int sheet, int a, int b, int c) {
+  const Mc33TunnelPatch* const first = kMc33TunnelPatches + tunnel.first;
+  if (tunnel.count == 1) return first->patch;
+  CellPoints points = crossings_of(sheet, a, b, c);
+  for (int n = 0; n < tunnel.count; ++n) {
+    const Mc33TunnelPatch& choice = first[n];
+    if (choice.has_inner_vertex()) points[kInnerVertex] = inner_point(choice, points, sheet);
+    if (patch_cuts_itself({kMc33Corners + choice.patch.first, 3u * choice.patch.count}, points)) continue;
+    if (choice.has_inner_vertex()) inner_vertex_ = vertices_.add_inside(a, b, c, points[kInnerVertex]);
+    return choice.patch;
+  }
+  return first->patch;
+}
+
+/// Where the sheet's vertices lie in a cell, in lattice steps from its corner 0.
+CellPoints BrickMesher::crossings_of(int sheet, int a, int b, int c) const {
+  const std::uint8_t above = field_.corners_above(sheet, a, b, c);
+  const GridIndex origin = field_.origin();
+  const std::array<int, 3> node = {origin.i + a, origin.j + b, origin.k + c};
+  CellPoints points{};
+  for (int edge = 0; edge < cell::kEdges; ++edge) {
+    const bool is_crossed = ((above >> cell::edge_start(edge)) & 1) != ((above >> cell::edge_end(edge)) & 1);
+    if (!is_crossed) continue;
+    const Vec3f position = mesh_.positions[vertices_.on_edge(sheet, edge, a, b, c)];
+    for (int axis = 0; axis < 3; ++axis) {
+      points[edge][axis] =
+          static_cast<std::int64_t>((static_cast<double>(position[axis]) - node[axis]) * kLatticeStepsPerVoxel);
+    }
+  }
+  return points;
 }
 
 /// The faces of a row's cells behind which a cell is absent.

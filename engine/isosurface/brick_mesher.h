@@ -9,6 +9,7 @@
 #include "engine/isosurface/cap_face.h"
 #include "engine/isosurface/extract.h"
 #include "engine/isosurface/mc33_tables.h"
+#include "engine/isosurface/patch_geometry.h"
 
 namespace geosis {
 
@@ -29,7 +30,9 @@ class BrickMesher {
  private:
   void fill_cells(int a, int b);
   void fill_cell(int sheet, int a, int b, int c);
-  const Mc33Patch& patch_of(int sheet, int a, int b, int c) const;
+  Mc33Patch patch_of(int sheet, int a, int b, int c);
+  Mc33Patch tunnel_patch(const Mc33Tunnel& tunnel, int sheet, int a, int b, int c);
+  CellPoints crossings_of(int sheet, int a, int b, int c) const;
   void cap_cells(int a, int b);
   void cap_cell(int face, int a, int b, int c);
   CapFace cap_face_of(int face, int a, int b, int c) const;
@@ -39,6 +42,7 @@ class BrickMesher {
   BrickField field_;
   BrickMesh mesh_;
   BrickVertices vertices_;
+  std::int32_t inner_vertex_ = -1;  ///< of the cell being filled
 };
 
 }  // namespace geosis

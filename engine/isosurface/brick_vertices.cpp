@@ -107,6 +107,17 @@ std::int32_t BrickVertices::append(int axis, int a, int b, int c, int step) {
   return number;
 }
 
+std::int32_t BrickVertices::add_inside(int a, int b, int c, const LatticePoint& steps) {
+  const auto number = static_cast<std::int32_t>(mesh_.positions.size());
+  const std::array<int, 3> at{a, b, c};
+  Vec3f position;
+  for (int n = 0; n < 3; ++n) {
+    position[n] = static_cast<float>(field_.origin()[n] + at[n]) + static_cast<float>(steps[n]) * kLatticeStep;
+  }
+  mesh_.positions.push_back(position);
+  return number;
+}
+
 std::int32_t BrickVertices::on_edge(int kind, int edge, int a, int b, int c) const {
   const int start = cell::edge_start(edge), axis = cell::edge_axis(edge);
   const int i = a + (start >> 2);

@@ -6,6 +6,7 @@
 
 #include "engine/isosurface/brick_field.h"
 #include "engine/isosurface/brick_mesh.h"
+#include "engine/mesh/lattice_triangles.h"
 
 namespace geosis {
 
@@ -25,6 +26,10 @@ class BrickVertices {
   /// Vertices in plane a, and on the edges from plane a to a + 1. Planes are made in rising order; two are remembered.
   void make_plane(int a);
   void make_between(int a);
+
+  /// A vertex strictly inside the cell at (a, b, c), `steps` lattice steps from its corner 0; its number. Cells belong
+  /// to one brick, so no other brick has it.
+  std::int32_t add_inside(int a, int b, int c, const LatticePoint& steps);
 
   /// Number of the vertex of that kind on an edge of the cell at (a, b, c).
   std::int32_t on_edge(int kind, int edge, int a, int b, int c) const;

@@ -84,7 +84,8 @@ struct Polygon {
 /// A chord between crossings of one sheet may be drawn by the present cell unless its type is the other cell's.
 bool chord_is_free(const CapFace& face, const CapVertex& a, const CapVertex& b) {
   if (a.kind != Kind::crossing || b.kind != Kind::crossing || a.sheet != b.sheet) return true;
-  return !chord::allowed(face.face, a.place, b.place);
+  const chord::FaceState state{.first_above = bit(face.above[a.sheet], 0), .joined_above = face.joined[a.sheet]};
+  return !chord::allowed(face.face, state, a.place, b.place);
 }
 
 /// The vertex from which a fan is free of forbidden chords and of flat triangles: a middle, else a node.

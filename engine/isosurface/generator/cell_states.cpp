@@ -7,28 +7,13 @@
 #include "engine/isosurface/cell.h"
 #include "engine/isosurface/cell_decisions.h"
 #include "engine/isosurface/generator/cell_loops.h"
+#include "engine/isosurface/generator/random.h"
 
 namespace geosis::generator {
 namespace {
 
 constexpr std::size_t kWitnesses = 12;
 constexpr int kFieldsPerMask = 400'000;
-
-/// SplitMix64: a fixed sequence on every machine.
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  double unit() {
-    state_ += 0x9e3779b97f4a7c15ull;
-    std::uint64_t z = state_;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-    return (static_cast<double>((z ^ (z >> 31)) >> 11) + 0.5) * 0x1p-53;
-  }
-
- private:
-  std::uint64_t state_;
-};
 
 using Permutation = std::array<int, 8>;
 
@@ -57,7 +42,7 @@ struct Classified {
   std::array<int, 2> joint{};
 };
 
-Classified classify(const Field& field) {
+Classified classify_with_joint(const Field& field) {
   Classified result;
   for (int c = 0; c < 8; ++c)
     result.state.above = static_cast<std::uint8_t>(result.state.above | ((field[c] > 0) << c));
@@ -101,7 +86,7 @@ Field random_field(std::uint8_t mask, Random& random) {
 }
 
 void record(std::map<CellState, StateWitnesses>& states, const Field& field) {
-  const Classified found = classify(field);
+  const Classified found = classify_with_joint(field);
   StateWitnesses& witnesses = states[found.state];
   if (witnesses.fields.empty()) {
     witnesses.joint = found.joint;
@@ -125,6 +110,10 @@ void record_images(std::map<CellState, StateWitnesses>& states, const Field& fie
 
 }  // namespace
 
+CellState classify(const Field& field) {
+  return classify_with_joint(field).state;
+}
+
 std::map<CellState, StateWitnesses> enumerate_states() {
   const auto symmetries = cube_symmetries();
   std::map<CellState, StateWitnesses> states;
@@ -133,7 +122,7 @@ std::map<CellState, StateWitnesses> enumerate_states() {
     const int fields = cell::ambiguous_faces(mask) != 0 || mask == 0x81 ? kFieldsPerMask : static_cast<int>(kWitnesses);
     for (int n = 0; n < fields; ++n) {
       const Field field = random_field(mask, random);
-      const auto known = states.find(classify(field).state);
+      const auto known = states.find(classify(field));
       if (known == states.end() || known->second.fields.size() < kWitnesses) record_images(states, field, symmetries);
     }
   }

@@ -21,6 +21,9 @@ struct CellState {
 
 using Field = std::array<double, 8>;
 
+/// The state of one function at level 0.
+CellState classify(const Field& field);
+
 struct StateWitnesses {
   std::vector<Field> fields;   ///< trilinear functions (level 0) that realise the state
   std::array<int, 2> joint{};  ///< regions that its tunnel joins

@@ -97,12 +97,13 @@ BrickBodies BrickLabeller::label(const BrickMesh& mesh) {
 std::int32_t BrickLabeller::join_place(const BrickMesh& mesh, std::int32_t vertex) {
   const Vec3f position = mesh.positions[vertex];
   std::array<int, 3> node{};
-  int axis = -1;
+  int axis = -1, between = 0;
   for (int n = 0; n < 3; ++n) {
     const int whole = static_cast<int>(position[n]);
-    if (position[n] != static_cast<float>(whole)) axis = n;
+    if (position[n] != static_cast<float>(whole)) axis = n, ++between;
     node[n] = whole - field_.origin()[n];
   }
+  if (between > 1) return 1;  // inside a cell: its triangles have joined it
   return axis < 0 ? join_node_copies(vertex, node[0], node[1], node[2])
                   : join_edge_vertices(vertex, axis, node[0], node[1], node[2]);
 }

@@ -15,6 +15,7 @@
 #include "engine/base/progress.h"
 #include "engine/isosurface/labelled_surface.h"
 #include "engine/volume/brick_file.h"
+#include "tests/property/subcases.h"
 #include "tests/support/mesh_checks.h"
 #include "tests/support/phantoms.h"
 #include "tests/support/solid_oracle.h"
@@ -245,6 +246,30 @@ std::string judge(const Request& request, bool& decided) {
   const SolidOracle solid(request.field, request.range, request.mode);
   decided = solid.decided();
   return decided ? judge_against_oracle(request, solid, surface) : std::string();
+}
+
+bool has_vertex_inside_a_cell(const LabelledSurface& surface) {
+  return std::any_of(surface.mesh.positions.begin(), surface.mesh.positions.end(), [](Vec3f p) {
+    return (p.x != std::floor(p.x)) + (p.y != std::floor(p.y)) + (p.z != std::floor(p.z)) > 1;
+  });
+}
+
+// Some tunnels have a vertex inside their cell, which lies on no edge that would tell its body.
+TEST(LabelledBodyOfSubcases, BodiesAreTheComponentsOfTheSolid) {
+  const std::uint64_t seed = test_seed(2);
+  Random random(seed);
+  int judged = 0, with_inner_vertices = 0;
+  for (const Subcase& subcase : subcases()) {
+    for (int symmetry = 0; symmetry < 48; symmetry += subcase.name[0] == '1' ? 1 : 8) {
+      const bool negated = symmetry % 2 == 1;
+      const Request request{embedded(subcase, symmetry, negated, 4, random), {0, kInf}};
+      bool decided = true;
+      ASSERT_EQ(judge(request, decided), "") << subcase.name << ", symmetry " << symmetry << ", seed " << seed;
+      with_inner_vertices += has_vertex_inside_a_cell(label(request, 1));
+      ++judged;
+    }
+  }
+  std::cout << "seed " << seed << ": " << with_inner_vertices << " of " << judged << " with vertices inside cells\n";
 }
 
 class LabelledBody : public testing::TestWithParam<Family> {};

@@ -124,11 +124,13 @@ Result<void> fill_gaps(const GapSurvey& survey, const GapSolver& solver, const G
     return {};
   };
   for (int wave = 0; wave < kWaves; ++wave) {
-    const auto jobs = std::ranges::equal_range(plan.jobs, wave, {}, &GapJob::wave);
-    const auto first = static_cast<std::size_t>(jobs.begin() - plan.jobs.begin());
-    parallel_for(jobs.size(), std::min(threads, wave == kSmallWave ? kSmallAtOnce : kBigAtOnce), [&](std::size_t n) {
-      if (auto solved = solve(first + n); !solved) errors[first + n] = std::move(solved).error();
-    });
+    const auto begin = std::ranges::lower_bound(plan.jobs, wave, {}, &GapJob::wave);
+    const auto end = std::ranges::upper_bound(plan.jobs, wave, {}, &GapJob::wave);
+    const auto first = static_cast<std::size_t>(begin - plan.jobs.begin());
+    parallel_for(static_cast<std::size_t>(end - begin),
+                 std::min(threads, wave == kSmallWave ? kSmallAtOnce : kBigAtOnce), [&](std::size_t n) {
+                   if (auto solved = solve(first + n); !solved) errors[first + n] = std::move(solved).error();
+                 });
     for (std::optional<Error>& error : errors)
       if (error) return *std::move(error);
   }

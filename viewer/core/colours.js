@@ -7,8 +7,17 @@
  */
 export const COLOURINGS = Object.freeze(['plain', 'bodies', 'reliability']);
 
-/** Reliability of what was measured. */
-export const MEASURED = 255;
+/** Reliability of what was measured; everything below was filled in, wholly or in part. */
+const MEASURED = 255;
+
+/** How strongly the most reliable filling shows: a good guess is a guess, too, and is to be seen. */
+const LEAST_FILLED = 0.6;
+
+/** How strongly a reliability shows as filled in, 0 = measured ... 1 = nothing is known. */
+export function filledShare(reliability) {
+  if (reliability === MEASURED) return 0;
+  return LEAST_FILLED + (1 - LEAST_FILLED) * (1 - reliability / (MEASURED - 1));
+}
 
 /**
  * The largest bodies' colours. Chosen so that any two stay apart (OKLab, lightness counted for less because shading
@@ -65,9 +74,11 @@ export function vertexColours({ positions, body, reliability }, { colouring, pla
   return colours;
 }
 
-/** How far each vertex was filled in, 0 = measured ... 255; null where there is nothing to tell. */
+/** How strongly each vertex shows as filled in, 0 = measured ... 255; null where there is nothing to tell. */
 export function filledOf({ reliability }, colouring) {
-  return colouring === 'reliability' && reliability ? reliability.map((value) => MEASURED - value) : null;
+  if (colouring !== 'reliability' || !reliability) return null;
+  const shares = tabulated((value) => Math.round(255 * filledShare(value)));
+  return reliability.map((value) => shares[value]);
 }
 
 function paintBodies(colours, body) {
@@ -80,14 +91,18 @@ function paintBodies(colours, body) {
 }
 
 function paintReliability(colours, reliability, plain, pale) {
-  const shades = Array.from({ length: MEASURED + 1 }, (_, value) =>
-    plain.map((channel, at) => (value * channel + (MEASURED - value) * pale[at]) / MEASURED));
+  const shades = tabulated((value) => plain.map((channel, at) => channel + filledShare(value) * (pale[at] - channel)));
   for (let vertex = 0, at = 0; vertex < reliability.length; ++vertex, at += 3) {
     const [red, green, blue] = shades[reliability[vertex]];
     colours[at] = red;
     colours[at + 1] = green;
     colours[at + 2] = blue;
   }
+}
+
+/** A function of reliabilities as a table. */
+function tabulated(ofReliability) {
+  return Array.from({ length: MEASURED + 1 }, (_, value) => ofReliability(value));
 }
 
 function paintAll(colours, colour) {

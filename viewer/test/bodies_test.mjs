@@ -3,7 +3,7 @@ import { describe, it } from 'node:test';
 
 import { bodiesTable, describeBody, describeSmaller, toggled } from '../core/bodies.js';
 import {
-  bodyColour, colouringFor, colouringsOf, filledOf, linearOf, swatchColour, vertexColours,
+  bodyColour, colouringFor, colouringsOf, filledOf, filledShare, linearOf, swatchColour, vertexColours,
 } from '../core/colours.js';
 import {
   bodiesCame, bodiesFailed, describe as sentenceOf, describeBodies, idle, manifestCame, progressed, started,
@@ -101,8 +101,14 @@ describe('vertex colours', () => {
 
   it('fade from plain to pale with the reliability', () => {
     const colours = vertexColours(part, { ...look, colouring: 'reliability' });
-    for (const [vertex, share] of [1, 0, 0.2].entries()) near(colourOf(colours, vertex), [share, share, share]);
-    assert.deepEqual([...filledOf(part, 'reliability')], [0, 255, 204]);
+    for (const [vertex, value] of part.reliability.entries()) near(colourOf(colours, vertex), new Array(3).fill(1 - filledShare(value)));
+    assert.deepEqual([...filledOf(part, 'reliability')], [0, 255, Math.round(255 * filledShare(51))]);
+  });
+
+  it('show all that was filled in, the least reliable most', () => {
+    assert.deepEqual([filledShare(255), filledShare(0)], [0, 1]);
+    assert.ok(filledShare(254) >= 0.5);
+    for (let value = 1; value < 256; ++value) assert.ok(filledShare(value) < filledShare(value - 1));
   });
 
   it('are plain in a part where everything was measured', () => {

@@ -47,8 +47,6 @@ export async function reconstructBy(page, action) {
  * returns  {share: of all pixels, middle: {x, y} of the one in their middle}
  */
 export async function pixelsWhere(page, test) {
-  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
-  const png = (await page.locator('#view').screenshot({ style: NO_OVERLAYS })).toString('base64');
   return page.evaluate(async ([data, source]) => {
     const satisfies = new Function(`return ${source}`)();
     const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
@@ -62,11 +60,34 @@ export async function pixelsWhere(page, test) {
       share: found.length / (image.width * image.height),
       middle: { x: middle % image.width, y: Math.floor(middle / image.width) },
     };
-  }, [png, test.toString()]);
+  }, [await pictureOf(page), test.toString()]);
 }
 
 export async function shareOfPixels(page, test) {
   return (await pixelsWhere(page, test)).share;
+}
+
+/** Share of the view's pixels that differ clearly after an action from what they were before. */
+export async function shareChangedBy(page, action) {
+  const before = await pictureOf(page);
+  await action();
+  return page.evaluate(async (pictures) => {
+    const [old, now] = await Promise.all(pictures.map(async (data) => {
+      const image = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+      const context = new OffscreenCanvas(image.width, image.height).getContext('2d');
+      context.drawImage(image, 0, 0);
+      return context.getImageData(0, 0, image.width, image.height).data;
+    }));
+    let changed = 0;
+    for (let at = 0; at < old.length; at += 4) changed += [0, 1, 2].some((channel) => Math.abs(old[at + channel] - now[at + channel]) > 24);
+    return changed / (old.length / 4);
+  }, [before, await pictureOf(page)]);
+}
+
+/** The view without what lies over it, as PNG in base64, once it is drawn. */
+async function pictureOf(page) {
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+  return (await page.locator('#view').screenshot({ style: NO_OVERLAYS })).toString('base64');
 }
 
 export const isWarm = (red, green, blue) => red > blue + 40;

@@ -32,7 +32,8 @@ ThinPlateOptions clamped_to_samples(const BrickedVolume& volume) {
 
 GapMethod plate_method(const BrickedVolume& volume, FillSteering steer, Vec3d step_lengths) {
   GapMethod method;
-  if (steer != FillSteering::off) method.margin = {kSteeringMarginTraces, kSteeringMarginTraces, kSteeringMarginSamples};
+  if (steer != FillSteering::off)
+    method.margin = {kSteeringMarginTraces, kSteeringMarginTraces, kSteeringMarginSamples};
   method.solve = [steer, step_lengths, options = clamped_to_samples(volume)](GapBox& gap,
                                                                              Progress& progress) -> Result<void> {
     if (wants_steering(gap, steer, progress)) {

@@ -39,7 +39,8 @@ Result<VertexAttributes> attributes_of(const LodLevel& level, const AttributeSou
 
 double interpolated_share(std::span<const std::uint8_t> reliability) {
   if (reliability.empty()) return 0;
-  const auto interpolated = std::count_if(reliability.begin(), reliability.end(), [](std::uint8_t r) { return r < 255; });
+  const auto interpolated =
+      std::count_if(reliability.begin(), reliability.end(), [](std::uint8_t r) { return r < 255; });
   return static_cast<double>(interpolated) / static_cast<double>(reliability.size());
 }
 

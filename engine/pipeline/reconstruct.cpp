@@ -170,8 +170,8 @@ Result<Reconstruction> run_stages(const Run& run) {
   auto samples = timed(run.timings.fill, [&] { return fill_stage(run.input, run.options, run.progress); });
   if (!samples) return std::move(samples).error();
   const ExtractStage stage{.bodies = run.options.attributes.body, .mirrored = run.space.mirrored()};
-  auto m0 = timed(run.timings.extract,
-                  [&] { return extract_stage(*samples->samples, run.options, stage, run.progress); });
+  auto m0 =
+      timed(run.timings.extract, [&] { return extract_stage(*samples->samples, run.options, stage, run.progress); });
   if (!m0) return std::move(m0).error();
   if (m0->mesh.triangles.empty()) return Reconstruction{};
   if (run.progress.cancelled()) return kCancelled;

@@ -54,12 +54,12 @@ struct ReconstructOptions {
   std::optional<GridBox> region = std::nullopt;  ///< unset = the whole volume
   BodyChoice bodies = BodyChoice();
   std::vector<double> ratios = {1, 0.25, 0.0625, 0.015625, 0.00390625};
-  bool index_space = false;                         ///< `space`: "index" instead of "world"
-  std::optional<double> velocity = std::nullopt;    ///< m/s: turns two-way time in ms into depth in m
+  bool index_space = false;                       ///< `space`: "index" instead of "world"
+  std::optional<double> velocity = std::nullopt;  ///< m/s: turns two-way time in ms into depth in m
   AttributeChoice attributes = {};
   std::optional<std::string> attribute_volume = std::nullopt;  ///< id of the volume that `value` is of
-  std::optional<int> position_bits = std::nullopt;  ///< unset = chosen so that topology survives
-  std::optional<int> speed = std::nullopt;          ///< unset = 7
+  std::optional<int> position_bits = std::nullopt;             ///< unset = chosen so that topology survives
+  std::optional<int> speed = std::nullopt;                     ///< unset = 7
   int threads = 1;
 };
 
@@ -73,12 +73,12 @@ struct ReconstructedLevel {
   LodLevel lod;
   VertexAttributes attributes;  ///< those asked for, of lod.mesh's vertices
   EncodedLevel encoded;
-  TopologyReport topology;   ///< of the decoded parts, joined
-  SurfaceMeasures measures;  ///< of the same, in the requested space
-  SurfaceDistance distance;  ///< to M0; all zero for a level that is M0 itself
+  TopologyReport topology;                      ///< of the decoded parts, joined
+  SurfaceMeasures measures;                     ///< of the same, in the requested space
+  SurfaceDistance distance;                     ///< to M0; all zero for a level that is M0 itself
   std::optional<SpaceDistance> space_distance;  ///< the same in the requested space, if that has lengths
-  double volume_drift = 0;        ///< (volume - volume of M0) / volume of M0; 0 when M0 has none
-  double interpolated_share = 0;  ///< of the vertices: between samples of which one was filled
+  double volume_drift = 0;                      ///< (volume - volume of M0) / volume of M0; 0 when M0 has none
+  double interpolated_share = 0;                ///< of the vertices: between samples of which one was filled
 };
 
 struct Reconstruction {
@@ -96,10 +96,10 @@ using LevelSink = std::function<void(std::size_t level, const ReconstructedLevel
 
 /// What a reconstruction reads. Everything is kept by reference.
 struct ReconstructInput {
-  const BrickedVolume& samples;    ///< as measured
-  const GridGeometry& geometry;    ///< from index coordinates to the world
-  bool has_lengths = true;         ///< the world's three axes have one unit: lengths, areas and volumes mean something
-  const FilledVolume* filled = nullptr;         ///< samples with options.fill applied; null = filled here when asked for
+  const BrickedVolume& samples;  ///< as measured
+  const GridGeometry& geometry;  ///< from index coordinates to the world
+  bool has_lengths = true;       ///< the world's three axes have one unit: lengths, areas and volumes mean something
+  const FilledVolume* filled = nullptr;  ///< samples with options.fill applied; null = filled here when asked for
   const BrickedVolume* attribute_volume = nullptr;  ///< of equal shape; what the attribute `value` is of
 };
 

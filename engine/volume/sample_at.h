@@ -15,9 +15,9 @@ namespace geosis {
 
 /// Positions sorted by the brick whose cells hold them, so that each brick is read once.
 struct BrickGroups {
-  std::vector<std::size_t> bricks;     ///< those with positions, rising
-  std::vector<std::size_t> first;      ///< (bricks + 1) where each brick's positions start in `order`
-  std::vector<std::uint32_t> order;    ///< (n) positions, those of one brick in their order
+  std::vector<std::size_t> bricks;   ///< those with positions, rising
+  std::vector<std::size_t> first;    ///< (bricks + 1) where each brick's positions start in `order`
+  std::vector<std::uint32_t> order;  ///< (n) positions, those of one brick in their order
 
   std::span<const std::uint32_t> of(std::size_t group) const {
     return std::span(order).subspan(first[group], first[group + 1] - first[group]);

@@ -40,9 +40,8 @@ struct LevelFile {
 ///
 /// Stored under <tenant>/extractions/<id>/: `request.json` (before anything is acknowledged),
 /// `parts/<level>.<part>.drc`, `levels/<level>.<format>` with a description beside it (whole files, made on first
-/// request), `bodies.json` (made on first request), `cancelled.json`, and `manifest.json`, written last: an extraction is done when its
-/// manifest is there.
-/// <tenant>/volumes/<volume>/results/<id> tells what was derived from a volume.
+/// request), `bodies.json` (made on first request), `cancelled.json`, and `manifest.json`, written last: an extraction
+/// is done when its manifest is there. <tenant>/volumes/<volume>/results/<id> tells what was derived from a volume.
 class Extractions {
  public:
   /// threads   that one extraction may use.

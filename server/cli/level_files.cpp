@@ -131,7 +131,8 @@ Result<void> write_result(OutputFolder& folder, const VolumeDescription& volume,
   const VolumeSummary summary = summarize(volume);
   auto written = write_document(folder, kBodiesFile, bodies_document(summary, options, results.bodies));
   if (!written) return written;
-  return write_document(folder, "manifest.json", manifest_document(summary, options, results.reconstruction, file_urls()));
+  return write_document(folder, "manifest.json",
+                        manifest_document(summary, options, results.reconstruction, file_urls()));
 }
 
 }  // namespace geosis::server

@@ -24,7 +24,8 @@ Result<FileFormats> parse_file_formats(std::string_view text);
 /// The folder's file names: lod0.drc, or lod0.0.drc, lod0.1.drc, ... when level 0 has several parts.
 ManifestUrls file_urls();
 
-/// True for names that this program gives to files of a result: manifest.json, bodies.json, lod0.drc, lod0.1.drc, lod4.ply, ...
+/// True for names that this program gives to files of a result: manifest.json, bodies.json, lod0.drc, lod0.1.drc,
+/// lod4.ply, ...
 bool is_result_file(const std::string& name);
 
 /// What a run has made.

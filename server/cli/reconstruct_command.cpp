@@ -102,9 +102,9 @@ Result<void> run_reconstruct(const ReconstructArguments& arguments) {
   const double import_seconds = watch.lap();
   StageTimings timings;
   ReconstructInput input{.samples = *volume->samples,
-                               .geometry = volume->description.geometry,
-                               .has_lengths = has_lengths(summary, *options),
-                               .attribute_volume = *other ? (*other)->samples.get() : nullptr};
+                         .geometry = volume->description.geometry,
+                         .has_lengths = has_lengths(summary, *options),
+                         .attribute_volume = *other ? (*other)->samples.get() : nullptr};
   const auto filled = fill_stage(input, *options, progress);  // once for both that follow
   if (!filled) return filled.error();
   input.filled = filled->filled;

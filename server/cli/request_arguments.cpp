@@ -81,8 +81,7 @@ RequestArguments::RequestArguments(CLI::App& command) {
   command.add_flag("--no-cap", no_cap_, "leave the body open where it leaves the survey");
   command.add_option("--region", region_, "nodes to look at, from 0, ends included")->type_name("I0:I1,J0:J1,K0:K1");
   command.add_option("--space", space_, "world (default) or index")->type_name("SPACE");
-  command.add_option("--velocity", velocity_, "turns the two-way times of a time survey into depths")
-      ->type_name("M/S");
+  command.add_option("--velocity", velocity_, "turns the two-way times of a time survey into depths")->type_name("M/S");
   command.add_option("--missing", missing_, "fill missing samples: none (default), linear or rbf")->type_name("METHOD");
   command.add_option("--kernel", kernel_, "of rbf: polyharmonic (default) or inverse_distance")->type_name("KERNEL");
   command.add_option("--steer", steer_, "fill along the reflectors: auto (default), on or off")->type_name("WHEN");
@@ -148,8 +147,8 @@ Result<void> RequestArguments::write_missing(Json& document) const {
 }
 
 Result<void> RequestArguments::write_bodies(Json& document) const {
-  for (const auto& [flag, name, text] : {std::tuple("--min-voxels", "min_voxels", &min_voxels_),
-                                         std::tuple("--largest", "largest", &largest_)}) {
+  for (const auto& [flag, name, text] :
+       {std::tuple("--min-voxels", "min_voxels", &min_voxels_), std::tuple("--largest", "largest", &largest_)}) {
     if (text->empty()) continue;
     auto number = number_from_text(flag, *text);
     if (!number) return std::move(number).error();

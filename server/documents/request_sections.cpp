@@ -24,9 +24,9 @@ std::optional<double> number(ObjectReader& reader, const char* name, double min,
   if (!member || member->is_null()) return std::nullopt;
   const double value = member->is_number() ? member->get<double>() : std::numeric_limits<double>::quiet_NaN();
   if (!std::isfinite(value) || !(above ? value > min : value >= min)) {
-    reader.refuse(reader.pointer_to(name), *member,
-                  std::string(above ? "a number above " : "a number of at least ") + std::to_string(int(min)) +
-                      " or null");
+    reader.refuse(
+        reader.pointer_to(name), *member,
+        std::string(above ? "a number above " : "a number of at least ") + std::to_string(int(min)) + " or null");
     return std::nullopt;
   }
   return value;

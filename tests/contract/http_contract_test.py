@@ -280,7 +280,7 @@ class Extractions(Refusals):
         self.refused(CLIENT.call("DELETE", f"/v1/extractions/{extraction}?purge=maybe"), 400, "invalid_argument")
 
     def test_what_is_unknown_is_not_found(self):
-        for rest in ("", "/events", "/stream", "/manifest", "/lods/0.drc", "/lods/0/parts/0.drc"):
+        for rest in ("", "/events", "/stream", "/manifest", "/bodies", "/lods/0.drc", "/lods/0/parts/0.drc"):
             self.refused(CLIENT.get(f"/v1/extractions/{ABSENT}{rest}"), 404, "not_found")
         self.refused(CLIENT.call("DELETE", f"/v1/extractions/{ABSENT}"), 404, "not_found")
         self.refused(CLIENT.send_json("POST", f"/v1/volumes/{ABSENT}/extractions", BODY), 404, "not_found")
@@ -362,6 +362,123 @@ class Results(Refusals):
         self.refused(CLIENT.call("POST", "/v1/extract", body=SURVEY), 400, "invalid_argument")
         self.refused(CLIENT.call("POST", "/v1/extract?range=1,0", body=SURVEY), 400, "invalid_argument")
         self.refused(CLIENT.call("POST", "/v1/extract?range=0,1", body=b"not a survey"), 422)
+
+
+class MissingSamples(Refusals):
+    """The sample survey has holes; its outline is a polygon."""
+
+    @staticmethod
+    def levels(**request):
+        extraction = done_extraction({**BODY, **request})
+        return CLIENT.get(f"/v1/extractions/{extraction}/manifest").json()["levels"]
+
+    def test_every_way_of_filling_gives_a_certified_body(self):
+        bytes_of_finest = {level["parts"][0]["sha256"] for level in (self.levels()[0],)}
+        for missing in ({"method": "linear"}, {"method": "rbf"}, {"method": "rbf", "steer": "off"},
+                        {"method": "rbf", "kernel": "inverse_distance"}):
+            finest = self.levels(missing=missing)[0]
+            self.assertTrue(finest["manifold"])
+            self.assertGreater(finest["interpolated_share"], 0, missing)
+            bytes_of_finest.add(finest["parts"][0]["sha256"])
+        self.assertEqual(len(bytes_of_finest), 5, "each way gives another surface")
+
+    def test_what_is_measured_only_interpolates_nothing(self):
+        self.assertEqual({level["interpolated_share"] for level in self.levels()}, {0})
+
+    def test_a_distance_near_zero_fills_nothing(self):
+        self.assertEqual(self.levels(missing={"method": "linear", "max_distance": 0.5})[0]["interpolated_share"], 0)
+
+    def test_one_shot_fills_too(self):
+        answer = CLIENT.call("POST", "/v1/extract?range=0.55,inf&missing=linear", body=SURVEY)
+        manifest = json.loads(answer.parts()[-1][1])
+        self.assertEqual(manifest["request"]["missing"]["method"], "linear")
+        self.assertGreater(manifest["levels"][0]["interpolated_share"], 0)
+        self.refused(CLIENT.call("POST", "/v1/extract?range=0,1&missing=maybe", body=SURVEY), 400, "invalid_argument")
+
+
+class Bodies(Refusals):
+    REQUEST = {"range": [0.1, 0.3]}  # many pieces
+
+    def bodies(self, request):
+        extraction = done_extraction(request)
+        manifest = CLIENT.get(f"/v1/extractions/{extraction}/manifest").json()
+        return CLIENT.get(f"/v1/extractions/{extraction}/{manifest['bodies_url']}").json()["bodies"], manifest
+
+    def test_each_is_described_largest_first(self):
+        bodies, manifest = self.bodies(self.REQUEST)
+        self.assertGreater(len(bodies), 3)
+        volumes = [body["volume_voxels"] for body in bodies]
+        self.assertEqual(volumes, sorted(volumes, reverse=True))
+        self.assertEqual([body["body"] for body in bodies], list(range(len(bodies))))
+        finest = manifest["levels"][0]
+        self.assertEqual(sum(body["components"] for body in bodies), finest["components"])
+        self.assertEqual(sum(body["genus"] for body in bodies), finest["genus"])
+        for body in bodies:
+            if body["amplitude"]:
+                self.assertLessEqual(0.1 - 1e-6, body["amplitude"]["min"])
+                self.assertLessEqual(body["amplitude"]["max"], 0.3 + 1e-6)
+
+    def test_filters_keep_the_same_bodies(self):
+        everything, _ = self.bodies(self.REQUEST)
+        largest, manifest = self.bodies({**self.REQUEST, "bodies": {"largest": 2}})
+        self.assertEqual(largest, everything[:2])
+        self.assertEqual(manifest["levels"][0]["components"], sum(body["components"] for body in largest))
+        least = everything[2]["volume_voxels"]
+        kept, _ = self.bodies({**self.REQUEST, "bodies": {"min_voxels": least}})
+        self.assertEqual(kept, [body for body in everything if body["volume_voxels"] >= least])
+
+    def test_a_seed_outside_every_body_keeps_none(self):
+        bodies, manifest = self.bodies({"range": [0.999, None], "bodies": {"seeds": [[0, 0, 0]]}})
+        self.assertEqual((bodies, manifest["levels"], manifest["empty"]), ([], [], True))
+
+    def test_they_have_a_tag_and_come_again(self):
+        target = f"/v1/extractions/{done_extraction()}/bodies"
+        first = CLIENT.get(target)
+        self.assertEqual(CLIENT.get(target).body, first.body)
+        self.assertEqual(CLIENT.get(target, If_None_Match=first.headers["etag"]).status, 304)
+        self.refused(CLIENT.get(f"/v1/extractions/{ABSENT}/bodies"), 404, "not_found")
+
+    def test_seeds_must_be_nodes(self):
+        answer = CLIENT.send_json("POST", f"/v1/volumes/{VOLUME}/extractions", {**BODY, "bodies": {"seeds": [[0, 0, 999]]}})
+        self.refused(answer, 400, pointer="/bodies/seeds")
+
+
+class Attributes(Refusals):
+    def test_a_value_comes_from_another_volume(self):
+        cube = raw_cube(8, 9, 10, lambda i, j, k: 1.0 if 2 <= i <= 5 and 2 <= j <= 6 and 3 <= k <= 7 else 0.0)
+        other = raw_cube(8, 9, 10, lambda i, j, k: float(100 * i + 10 * j + k))
+        volume = CLIENT.upload(cube, "format=raw&dims=8,9,10").json()["id"]
+        values = CLIENT.upload(other, "format=raw&dims=8,9,10").json()["id"]
+        request = {"range": [0.5, None], "attributes": ["value", "body"], "attribute_volume": values, "levels": [{"ratio": 1}]}
+        extraction = done_extraction(request, volume)
+        ply = CLIENT.get(f"/v1/extractions/{extraction}/lods/0.ply").body
+        header, _, data = ply.partition(b"end_header\n")
+        self.assertIn(b"property uint body\nproperty float value", header)
+        count = int(header.split(b"element vertex ")[1].split()[0])
+        for n in range(count):
+            i, j, k, body, value = struct.unpack_from("<dddIf", data, 32 * n)
+            self.assertEqual(body, 0)
+            self.assertAlmostEqual(value, 100 * i + 10 * j + k, places=3)
+        self.assertEqual(CLIENT.call("DELETE", f"/v1/volumes/{values}").status, 204)
+        self.refused(CLIENT.get(f"/v1/extractions/{extraction}"), 404, "not_found")
+
+    def test_the_other_volume_must_fit(self):
+        small = CLIENT.upload(raw_cube(2, 2, 2), "format=raw&dims=2,2,2").json()["id"]
+        target = f"/v1/volumes/{VOLUME}/extractions"
+        for other, status in ((small, 400), (ABSENT, 404), (None, 400)):
+            request = {**BODY, "attributes": ["value"], "attribute_volume": other}
+            self.refused(CLIENT.send_json("POST", target, request), status, pointer="/attribute_volume")
+
+    def test_a_velocity_turns_times_into_depths(self):
+        times = CLIENT.get(f"/v1/extractions/{done_extraction()}/manifest").json()
+        depths = CLIENT.get(f"/v1/extractions/{done_extraction({**BODY, 'velocity': 3000})}/manifest").json()
+        self.assertAlmostEqual(depths["transform"][10], 1.5 * times["transform"][10])
+        self.assertIsNone(times["levels"][0]["volume"])
+        self.assertGreater(depths["levels"][0]["volume"], 0)
+        self.assertGreater(depths["levels"][4]["distance"]["max"], 0)
+        cube = CLIENT.upload(raw_cube(4, 4, 4), "format=raw&dims=4,4,4").json()["id"]
+        self.refused(CLIENT.send_json("POST", f"/v1/volumes/{cube}/extractions", {"range": [1, 3], "velocity": 2000}), 400,
+                     pointer="/velocity")
 
 
 class SameBytes(unittest.TestCase):

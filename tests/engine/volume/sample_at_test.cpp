@@ -57,7 +57,8 @@ TEST(SampleAt, ReadsNodesAsTheyAre) {
 TEST(SampleAt, IsMissingOnlyWhereAMissingSampleCounts) {
   auto samples = polynomial_samples();
   samples[static_cast<std::size_t>((5 * kShape.crosslines + 1) * kShape.samples + 7)] = kMissing;
-  const auto values = values_at(samples, {{4.5f, 1, 7}, {4.5f, 1, 6}, {5, 0.5f, 7}, {5, 1, 7.25f}, {4, 1, 7}, {5, 2, 7}});
+  const auto values =
+      values_at(samples, {{4.5f, 1, 7}, {4.5f, 1, 6}, {5, 0.5f, 7}, {5, 1, 7.25f}, {4, 1, 7}, {5, 2, 7}});
   EXPECT_TRUE(std::isnan(values[0]));
   EXPECT_FALSE(std::isnan(values[1]));
   EXPECT_TRUE(std::isnan(values[2]));

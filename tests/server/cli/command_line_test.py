@@ -140,7 +140,7 @@ class Reconstruct(WithFolder):
     def test_writes_five_levels_as_the_manifest_says(self):
         out, manifest = self.reconstruct("five", *BODY)
         self.assertEqual([level["level"] for level in manifest["levels"]], [0, 1, 2, 3, 4])
-        self.assertEqual(sorted(files_in(out)), sorted(["manifest.json", *(f"lod{k}.drc" for k in range(5))]))
+        self.assertEqual(sorted(files_in(out)), sorted(["bodies.json", "manifest.json", *(f"lod{k}.drc" for k in range(5))]))
         self.expect_parts(out, manifest)
 
     def test_every_level_keeps_the_topology_of_the_finest(self):
@@ -206,16 +206,16 @@ class Reconstruct(WithFolder):
             self.assertEqual(document["nodes"][0]["extras"]["origin"], manifest["origin"])
             self.assertEqual(document["accessors"][0]["count"], level["vertices"])
 
-    def test_empty_range_leaves_the_manifest_alone(self):
+    def test_empty_range_leaves_the_documents_alone(self):
         out, manifest = self.reconstruct("empty", "--range", "1000", "inf")
         self.assertEqual((manifest["empty"], manifest["levels"]), (True, []))
-        self.assertEqual(list(files_in(out)), ["manifest.json"])
+        self.assertEqual(sorted(files_in(out)), ["bodies.json", "manifest.json"])
 
     def test_removes_the_files_of_an_earlier_result(self):
         out, _ = self.reconstruct("again", *BODY, "--formats", "obj")
         (out / "notes.txt").write_text("mine", encoding="utf-8")
         self.reconstruct("again", "--range", "1000", "inf")
-        self.assertEqual(sorted(files_in(out)), ["manifest.json", "notes.txt"])
+        self.assertEqual(sorted(files_in(out)), ["bodies.json", "manifest.json", "notes.txt"])
 
     def test_failed_run_leaves_an_earlier_result_as_it_was(self):
         out, _ = self.reconstruct("kept", *BODY)
@@ -306,8 +306,8 @@ class Refusals(WithFolder):
         self.expect_refusal("(unavailable|not_found)", "synth", self.folder / "none" / "out.sgy")
 
     def test_unknown_format(self):
-        self.expect_refusal("invalid_argument", "reconstruct", self.survey, *BODY, "--formats", "stl",
-                            "--out", self.folder / "out", says="stl")
+        self.expect_refusal("invalid_argument", "reconstruct", self.survey, *BODY, "--formats", "step",
+                            "--out", self.folder / "out", says="step")
 
     def test_command_lines_that_make_no_sense(self):
         for arguments in ((), ("paint",), ("reconstruct",), ("reconstruct", self.survey, "--range", "1"),

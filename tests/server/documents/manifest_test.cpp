@@ -37,6 +37,7 @@ ReconstructedLevel level_of(std::vector<std::vector<std::byte>> parts) {
   level.topology = {.vertices = 12, .triangles = 20, .components = 1, .euler = 2, .manifold = true};
   level.measures = {.area = 7.5, .volume = 1.25};
   level.distance = {.mean_voxels = 0.5, .max_voxels = 1.5, .samples = 100};
+  level.space_distance = SpaceDistance{12.5, 37.5};
   return level;
 }
 
@@ -100,7 +101,45 @@ TEST(ManifestDocument, HasNoMeasuresForATimeSurveyInTheWorld) {
   EXPECT_TRUE(in_world["volume"].is_null());
   const Json by_index = manifest_of(time_survey, by_index_space(), {level_of({{std::byte{1}}})})["levels"][0];
   EXPECT_EQ(by_index["area"], 7.5);
-  EXPECT_EQ(by_index["distance"]["max"], 1.5);
+}
+
+TEST(ManifestDocument, HasMeasuresForATimeSurveyWithAVelocity) {
+  ReconstructOptions options;
+  options.velocity = 2000;
+  const auto manifest = manifest_of(survey_in("ms"), options, {level_of({{std::byte{1}}})});
+  EXPECT_EQ(manifest["levels"][0]["area"], 7.5);
+  EXPECT_EQ(manifest["transform"][10], 5);  // 5 ms are 5 m down and up at 2000 m/s
+  EXPECT_EQ(manifest["origin"][2], 300);
+}
+
+TEST(ManifestDocument, TellsDistancesInBothSpaces) {
+  const Json distance = manifest_of(depth_survey(), {}, {level_of({{std::byte{1}}})})["levels"][0]["distance"];
+  EXPECT_EQ(distance["mean_voxels"], 0.5);
+  EXPECT_EQ(distance["mean"], 12.5);
+  EXPECT_EQ(distance["max"], 37.5);
+}
+
+TEST(BodiesDocument, DescribesEveryBody) {
+  DescribedBody body;
+  body.surface = {.components = 3, .cavities = 2, .genus = 1, .volume = 250, .area = 90, .volume_voxels = 10.5};
+  body.surface.low = {1, 2, 3};
+  body.surface.high = {4, 5, 6};
+  body.surface.interpolated_share = 0.25;
+  body.samples = {.voxels = 12, .amplitude = BodySamples::Amplitude{0.75, 0.5f, 1}};
+  const Json bodies = bodies_document(summarize(depth_survey()), {}, {body, {}})["bodies"];
+  ASSERT_EQ(bodies.size(), 2u);
+  EXPECT_EQ(bodies[0]["body"], 0);
+  EXPECT_EQ(bodies[0]["voxels"], 12);
+  EXPECT_EQ(bodies[0]["volume"], 250);
+  EXPECT_EQ(bodies[0]["bbox"], Json({{1., 2., 3.}, {4., 5., 6.}}));
+  EXPECT_EQ(bodies[0]["cavities"], 2);
+  EXPECT_EQ(bodies[0]["amplitude"], Json({{"mean", 0.75}, {"min", 0.5}, {"max", 1.}}));
+  EXPECT_EQ(bodies[0]["interpolated_share"], 0.25);
+  EXPECT_EQ(bodies[1]["body"], 1);
+  EXPECT_TRUE(bodies[1]["amplitude"].is_null());
+  const Json in_time = bodies_document(summarize(survey_in("ms")), {}, {body})["bodies"][0];
+  EXPECT_TRUE(in_time["volume"].is_null());
+  EXPECT_EQ(in_time["volume_voxels"], 10.5);
 }
 
 TEST(ManifestDocument, TransformsToTheRequestedSpace) {

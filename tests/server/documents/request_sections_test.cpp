@@ -25,9 +25,8 @@ void expect_refused(const std::string& members, const std::string& message) {
 }
 
 TEST(RequestMissing, ReadsEveryWayOfFilling) {
-  const auto fill = request_with(R"("missing": {"method": "rbf", "kernel": "inverse_distance", "max_distance": 2.5})")
-                        .value()
-                        .fill;
+  const auto fill =
+      request_with(R"("missing": {"method": "rbf", "kernel": "inverse_distance", "max_distance": 2.5})").value().fill;
   EXPECT_EQ(fill, (FillOptions{FillMethod::rbf, RbfKernel::inverse_distance, FillSteering::automatic, 2.5}));
   EXPECT_EQ(request_with(R"("missing": {"method": "rbf", "steer": "off"})").value().fill.steer, FillSteering::off);
   EXPECT_EQ(request_with(R"("missing": {"method": "linear"})").value().fill.method, FillMethod::linear);
@@ -35,7 +34,8 @@ TEST(RequestMissing, ReadsEveryWayOfFilling) {
 }
 
 TEST(RequestMissing, IsCanonicalWithoutWhatHasNoEffect) {
-  EXPECT_EQ(canonical(R"("missing": {"method": "none", "max_distance": 3, "steer": "on"})"), canonical(R"("cap": true)"));
+  EXPECT_EQ(canonical(R"("missing": {"method": "none", "max_distance": 3, "steer": "on"})"),
+            canonical(R"("cap": true)"));
   EXPECT_EQ(canonical(R"("missing": {"method": "linear", "kernel": "inverse_distance", "steer": "on"})"),
             canonical(R"("missing": {"method": "linear"})"));
   EXPECT_EQ(canonical(R"("missing": {"method": "rbf", "kernel": "inverse_distance", "steer": "on"})"),
@@ -89,9 +89,8 @@ TEST(RequestAttributes, AreReadInAnyOrder) {
 }
 
 TEST(RequestAttributes, NeedTheVolumeThatAValueIsOf) {
-  expect_refused(
-      R"("attributes": ["value"])",
-      "request /attribute_volume: null; expected the id of the volume that the attribute \"value\" is of");
+  expect_refused(R"("attributes": ["value"])",
+                 "request /attribute_volume: null; expected the id of the volume that the attribute \"value\" is of");
   expect_refused(R"("attribute_volume": "abc")",
                  "request /attribute_volume: \"abc\"; expected null, as \"attributes\" does not ask for \"value\"");
   expect_refused(R"("attributes": ["colour"])",

@@ -66,7 +66,7 @@ class JsonWriter {
     separate();
     std::array<char, 32> digits;  // the longest double has 24 characters
     const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
-    text_.append(digits.data(), end);
+    text_.append(digits.data(), static_cast<std::size_t>(end - digits.data()));
     return *this;
   }
 

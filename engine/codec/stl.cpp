@@ -23,7 +23,7 @@ std::string header(Vec3d origin) {
     std::array<char, 32> digits;
     const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), origin[axis]).ptr;
     text += ' ';
-    text.append(digits.data(), end);
+    text.append(digits.data(), static_cast<std::size_t>(end - digits.data()));
   }
   text.resize(kHeaderBytes, ' ');
   return text;

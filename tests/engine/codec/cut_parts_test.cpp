@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/codec/level_codec.h"
 #include "tests/support/lattice_meshes.h"
 
 namespace geosis {
@@ -31,6 +32,20 @@ TEST(PlanParts, SizesDifferByOneAtMost) {
   EXPECT_EQ(plan.first_triangle, (std::vector<std::size_t>{0, 2, 4}));
   const PartPlan uneven = plan_parts(test::sheet(3, 0), 7);  // 18 triangles
   EXPECT_EQ(uneven.first_triangle, (std::vector<std::size_t>{0, 6, 12, 18}));
+}
+
+/// Below 50,000 triangles parts cost bytes and time, beyond 100,000 they no longer spread over workers.
+TEST(PlanParts, PartsOfBigLevelsHoldFiftyToAHundredThousandTriangles) {
+  const std::int32_t limit = EncodeOptions().max_part_triangles;
+  IndexedMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}};
+  for (const std::size_t triangles : {100'001u, 125'000u, 200'000u, 200'001u, 299'999u, 979'572u}) {
+    mesh.triangles.resize(triangles, {0, 1, 2});
+    const PartPlan plan = plan_parts(mesh, limit);
+    for (std::size_t part = 0; part < plan.parts(); ++part) {
+      const std::size_t size = plan.first_triangle[part + 1] - plan.first_triangle[part];
+      EXPECT_TRUE(size >= 50'000 && size <= 100'000) << triangles << " triangles, part of " << size;
+    }
+  }
 }
 
 TEST(CutPart, RenumbersVerticesInTheirOrder) {

@@ -157,8 +157,10 @@ TEST(DecodeLevel, DamagedBytesNeverCrash) {
   const unsigned seed = std::random_device{}();
   SCOPED_TRACE("seed " + std::to_string(seed));
   std::mt19937 random(seed);
-  const auto encoded =
-      encode_level(test::random_shapes(random, 3), {}, {.position_bits = 12, .max_part_triangles = 60});
+  const IndexedMesh mesh = test::random_shapes(random, 3);
+  VertexAttributes attributes = test::attributes_of(mesh.positions);
+  attributes.normal = test::normals_of(mesh.positions);
+  const auto encoded = encode_level(mesh, attributes, {.position_bits = 12, .max_part_triangles = 60});
   ASSERT_TRUE(encoded);
   for (int trial = 0; trial < 500; ++trial) {
     EncodedLevel damaged = *encoded;

@@ -20,8 +20,8 @@ struct BodyReport {
   std::int64_t genus = 0;       ///< sum over the surfaces, each closed over its boundary loops
   double volume = 0, area = 0;
   double volume_voxels = 0;  ///< in index units, exact for vertices on the lattice
-  Vec3d low, high;           ///< box around the vertices; zero without vertices
-  Vec3d centroid;            ///< of the solid; of the vertices where it encloses no volume
+  Vec3d low{}, high{};       ///< box around the vertices; zero without vertices
+  Vec3d centroid{};          ///< of the solid; of the vertices where it encloses no volume
   /// Of the vertices whose reliability is below 255: not between measured samples only. 0 without reliabilities.
   double interpolated_share = 0;
 };

@@ -111,8 +111,8 @@ class Filling {
     write_linear(*writer, method ? kStarted : kLinear);
     if (method) {
       const GapSurvey survey{volume_, barycentre_, options_.max_distance ? fillable : nodes_};
-      if (auto solved = fill_gaps(survey, method->solve, {.margin = method->margin}, *writer, threads_, progress_,
-                                  kStarted, kSolved);
+      if (auto solved =
+              fill_gaps(survey, method->solve, {.wide = method->wide}, *writer, threads_, progress_, kStarted, kSolved);
           !solved)
         return std::move(solved).error();
     }

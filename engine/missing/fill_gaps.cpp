@@ -114,7 +114,7 @@ Result<void> fill_gaps(const GapSurvey& survey, const GapSolver& solver, const G
   const auto solve = [&](std::size_t number) -> Result<void> {
     const GapJob& job = plan.jobs[number];
     if (progress.cancelled()) return Error{ErrorCode::cancelled, "cancelled"};
-    auto gap = read_gap(survey, *gaps, plan, job, limits.margin, writer, progress);
+    auto gap = read_gap(survey, *gaps, plan, job, job.wide ? limits.wide.margin : limits.margin, writer, progress);
     if (!gap) return std::move(gap).error();
     if (wants_any(*gap, job.core)) {
       if (auto solved = solver(*gap, progress); !solved) return solved;

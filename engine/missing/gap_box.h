@@ -19,6 +19,7 @@ enum class NodeState : std::uint8_t {
 struct GapBox {
   SampleBox samples;
   std::vector<NodeState> state;  ///< as samples.value
+  bool wide = false;             ///< has the surroundings of a wide gap (gap_jobs.h)
 };
 
 }  // namespace geosis

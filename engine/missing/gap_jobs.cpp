@@ -1,6 +1,7 @@
 #include "engine/missing/gap_jobs.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <limits>
 
@@ -22,7 +23,7 @@ class Planner {
  public:
   Planner(const Gaps& gaps, const GapLimits& limits) : gaps_(gaps), limits_(limits) {
     for (int axis = 0; axis < 3; ++axis) tiles_[axis] = (gaps.shape[axis] - 1) / limits.small_tile + 1;
-    tile_job_.assign(static_cast<std::size_t>(tiles_[0]) * tiles_[1] * tiles_[2], kNone);
+    for (auto& jobs : tile_job_) jobs.assign(static_cast<std::size_t>(tiles_[0]) * tiles_[1] * tiles_[2], kNone);
     plan_.group_of.reserve(gaps.gaps.size());
   }
 
@@ -35,32 +36,36 @@ class Planner {
  private:
   void add(const Gap& gap) {
     const GridShape side = shape_of(gap.box);
-    if (std::max({side.inlines, side.crosslines, side.samples}) <= limits_.small_gap) return add_small(gap);
-    if (shape_of(grown(gap.box, limits_.margin, gaps_.shape)).count() > limits_.whole_box) return add_tiles(gap);
+    const std::int32_t narrower = std::min(side.inlines, side.crosslines);
+    const bool wide = narrower >= limits_.wide.first && narrower <= limits_.wide.last;
+    if (std::max({side.inlines, side.crosslines, side.samples}) <= limits_.small_gap) return add_small(gap, wide);
+    const GridShape margin = wide ? limits_.wide.margin : limits_.margin;
+    if (shape_of(grown(gap.box, margin, gaps_.shape)).count() > limits_.whole_box) return add_tiles(gap, wide);
     plan_.group_of.push_back(groups_);
-    plan_.jobs.push_back({kWholeWave, groups_++, gap.box, gap.box, {}, {}});
+    plan_.jobs.push_back({kWholeWave, groups_++, gap.box, gap.box, {}, {}, wide});
   }
-  void add_small(const Gap& gap) {
+  void add_small(const Gap& gap, bool wide) {
     std::size_t tile = 0;
     for (int axis = 0; axis < 3; ++axis)
       tile = tile * static_cast<std::size_t>(tiles_[axis]) +
              static_cast<std::size_t>(gap.box.first[axis] / limits_.small_tile);
-    std::uint32_t& job = tile_job_[tile];
+    std::uint32_t& job = tile_job_[wide ? 1 : 0][tile];
     if (job == kNone) {
       job = static_cast<std::uint32_t>(plan_.jobs.size());
-      plan_.jobs.push_back({kSmallWave, groups_++, gap.box, gap.box, {}, {}});
+      plan_.jobs.push_back({kSmallWave, groups_++, gap.box, gap.box, {}, {}, wide});
     }
     GapJob& own = plan_.jobs[job];
     own.core = own.solved = united(own.core, gap.box);
     plan_.group_of.push_back(own.group);
   }
-  void add_tiles(const Gap& gap) {
+  void add_tiles(const Gap& gap, bool wide) {
     const GridShape side = shape_of(gap.box);
     const auto even = [&](std::int32_t nodes) {
       const std::int32_t tiles = (nodes - 1) / limits_.tile + 1;
       return (nodes - 1) / tiles + 1;
     };
-    GapJob job{0, groups_, {}, {}, gap.box.first, {even(side.inlines), even(side.crosslines), even(side.samples)}};
+    GapJob job{0,   groups_, {}, {}, gap.box.first, {even(side.inlines), even(side.crosslines), even(side.samples)},
+               wide};
     for (GridIndex at = gap.box.first; at.i <= gap.box.last.i; at.i += job.tile_shape.inlines) {
       for (at.j = gap.box.first.j; at.j <= gap.box.last.j; at.j += job.tile_shape.crosslines) {
         for (at.k = gap.box.first.k; at.k <= gap.box.last.k; at.k += job.tile_shape.samples) {
@@ -79,7 +84,8 @@ class Planner {
   const Gaps& gaps_;
   const GapLimits& limits_;
   std::int32_t tiles_[3];
-  std::vector<std::uint32_t> tile_job_;  ///< tile -> the job of the small gaps that begin in it
+  /// Tile -> the job of the small gaps that begin in it; [0] narrow ones, [1] wide ones.
+  std::array<std::vector<std::uint32_t>, 2> tile_job_;
   std::uint32_t groups_ = 0;
   GapPlan plan_;
 };

@@ -8,9 +8,16 @@
 
 namespace geosis {
 
+/// Gaps by their narrower lateral side in traces: those from `first` to `last` are wide.
+struct WideGaps {
+  std::int32_t first = 1, last = 0;  ///< none
+  GridShape margin{2, 2, 2};         ///< layers around what is wanted in them
+};
+
 /// How gaps are cut into boxes.
 struct GapLimits {
   GridShape margin{2, 2, 2};           ///< layers around what is wanted; two hold all stencils
+  WideGaps wide = {};                  ///< never in one box with others
   std::int32_t small_gap = 32;         ///< nodes a side: smaller gaps are solved together,
   std::int32_t small_tile = 64;        ///< those that begin in one tile
   std::int64_t whole_box = 4'000'000;  ///< nodes of the box of a gap that is solved whole
@@ -30,6 +37,7 @@ struct GapJob {
   GridBox solved;           ///< those that it solves; the core is among them
   GridIndex tiles_first;    ///< the corner of the gap that was cut into tiles of this size
   GridShape tile_shape;     ///< no nodes: not cut
+  bool wide = false;        ///< of wide gaps
 
   /// The wave in which a node of the group is decided.
   int wave_of(GridIndex node) const;

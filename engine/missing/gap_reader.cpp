@@ -24,6 +24,7 @@ class Reader {
     auto samples = read_box(survey_.volume, box);
     if (!samples) return std::move(samples).error();
     gap_.samples = *std::move(samples);
+    gap_.wide = job_.wide;
     gap_.state.resize(gap_.samples.value.size());
     std::ranges::transform(gap_.samples.value, gap_.state.begin(),
                            [](float value) { return value == value ? NodeState::known : NodeState::absent; });

@@ -7,6 +7,7 @@
 #include "engine/base/vec3.h"
 #include "engine/missing/fill_options.h"
 #include "engine/missing/gap_box.h"
+#include "engine/missing/gap_jobs.h"
 #include "engine/volume/bricks.h"
 
 namespace geosis {
@@ -14,10 +15,10 @@ namespace geosis {
 /// Fills the wanted nodes of one box; called from several threads at once. errors: as the method's, cancelled.
 using GapSolver = std::function<Result<void>(GapBox& gap, Progress& progress)>;
 
-/// A solver, and the layers of nodes that it wants around what it solves.
+/// A solver, and the gaps that it wants with more surroundings.
 struct GapMethod {
   GapSolver solve;
-  GridShape margin{2, 2, 2};
+  WideGaps wide;
 };
 
 /// The method for the gaps of a volume that the options ask for; method is rbf. This is the one place that knows the

@@ -14,7 +14,6 @@
 namespace geosis {
 namespace {
 
-constexpr std::int32_t kLeastWidth = 4;  // traces
 constexpr double kLeastPlanarity = 0.5;
 constexpr float kFirstWeight = 0.003f;    // of the first guess in the dips
 constexpr float kRepeatedWeight = 0.02f;  // of the filled samples in the dips, the second time
@@ -24,7 +23,7 @@ constexpr double kFirstTolerance = 50, kSecondTolerance = 10;  // in the caller'
 constexpr int kMostIterations = 400;
 constexpr double kRounding = 2e-7;  // of samples up to 1, in float
 
-/// Whether somewhere a square of kLeastWidth x kLeastWidth traces each lack a sample.
+/// Whether somewhere a square of kLeastSteeredTraces x kLeastSteeredTraces traces each lack a sample.
 bool is_wide(const GapBox& gap) {
   const GridShape shape = gap.samples.shape;
   // side[j] is that of the largest square whose last corner is the trace (i, j).
@@ -35,7 +34,7 @@ bool is_wide(const GapBox& gap) {
       const auto first = gap.state.begin() + static_cast<std::ptrdiff_t>(gap.samples.at(i, j, 0));
       const bool lacks = std::find(first, first + shape.samples, NodeState::wanted) != first + shape.samples;
       side[j] = !lacks ? 0 : i == 0 || j == 0 ? 1 : 1 + std::min({above[j], above[j - 1], side[j - 1]});
-      if (side[j] >= kLeastWidth) return true;
+      if (side[j] >= kLeastSteeredTraces) return true;
     }
   }
   return false;

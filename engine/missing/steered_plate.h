@@ -14,6 +14,9 @@ namespace geosis {
 inline constexpr std::int32_t kSteeringMarginTraces = 8;
 inline constexpr std::int32_t kSteeringMarginSamples = 16;
 
+/// Automatic steering takes gaps of at least so many traces in each lateral direction.
+inline constexpr std::int32_t kLeastSteeredTraces = 4;
+
 /// Whether the gap is to be filled along the dips. Automatic: when 4 x 4 neighbouring traces lack samples and the
 /// samples around look like planes (mean planarity above one half).
 ///

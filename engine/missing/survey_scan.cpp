@@ -17,8 +17,8 @@ namespace geosis {
 namespace {
 
 constexpr double kShare = 0.3;  ///< of the stage
-// Step lengths of more traces than this are taken from one in four: tens of thousands are plenty.
-constexpr std::size_t kTracesForAll = 100'000;
+// Step lengths of big surveys are taken from about so many of their traces: that is plenty.
+constexpr std::size_t kTracesForSteps = 16'384;
 
 double middle_of_range(const BrickedVolume& volume) {
   ValueRange all{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
@@ -27,6 +27,12 @@ double middle_of_range(const BrickedVolume& volume) {
     all = {std::min(all.min, range.min), std::max(all.max, range.max)};
   }
   return all.min <= all.max ? (double{all.min} + double{all.max}) / 2 : 0;
+}
+
+/// Of how many traces one is summed.
+std::uint32_t row_share(GridShape shape) {
+  const std::size_t traces = static_cast<std::size_t>(shape.inlines) * static_cast<std::size_t>(shape.crosslines);
+  return static_cast<std::uint32_t>(std::max<std::size_t>(traces / kTracesForSteps, 1));
 }
 
 /// Bit k of the result: sample k of the row is valid. n <= 64.
@@ -57,8 +63,7 @@ class Scanner {
         scan_(scan),
         layout_(scan.views.layout()),
         pivot_(middle_of_range(volume)),
-        row_share_(static_cast<std::size_t>(layout_.shape().inlines) * layout_.shape().crosslines > kTracesForAll ? 4
-                                                                                                                  : 1),
+        row_share_(row_share(layout_.shape())),
         sums_(layout_.brick_count()) {}
 
   Result<void> read_column(std::size_t column, const FillShare& share) {

@@ -150,7 +150,7 @@ void report(const Case& gap, const Field& truth, Range range, const FillOptions&
               count + left, left, rmse, wrong / inside, trusted / count, 1 - rmse * rmse);
 }
 
-Field read_survey(const char* path, bool petrel) {
+Field read_survey(const char* path, const char* crop) {
   NoProgress unwatched;
   const auto source = open_file(path);
   if (!source) {
@@ -164,21 +164,28 @@ Field read_survey(const char* path, bool petrel) {
   }
   const GridShape shape = imported->samples->shape();
   GridBox box = whole(shape);
-  if (petrel) box.last = {std::min(75, box.last.i), std::min(119, box.last.j), std::min(199, box.last.k)};
+  if (crop != nullptr && std::sscanf(crop, "%d:%d,%d:%d,%d:%d", &box.first.i, &box.last.i, &box.first.j, &box.last.j,
+                                     &box.first.k, &box.last.k) != 6) {
+    std::fprintf(stderr, "%s: expected I0:I1,J0:J1,K0:K1\n", crop);
+    std::exit(1);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    box.first[axis] = std::clamp(box.first[axis], 0, shape[axis] - 1);
+    box.last[axis] = std::clamp(box.last[axis], box.first[axis], shape[axis] - 1);
+  }
   auto samples = read_box(*imported->samples, box);
   return {samples->shape, std::move(samples->value)};
 }
 
 int run(int count, char** arguments) {
-  const bool petrel = std::strstr(arguments[1], "petrel") != nullptr;
   const std::string method = count > 2 ? arguments[2] : "linear", steer = count > 3 ? arguments[3] : "auto";
-  const std::uint64_t seed = count > 4 ? std::strtoull(arguments[4], nullptr, 10) : 1;
+  const std::uint64_t seed = 1;
   FillOptions options{.method = method == "linear" ? FillMethod::linear : FillMethod::rbf};
   if (method == "inverse_distance") options.kernel = RbfKernel::inverse_distance;
   options.steer = steer == "on" ? FillSteering::on : steer == "off" ? FillSteering::off : FillSteering::automatic;
-  const Field truth = read_survey(arguments[1], petrel);
+  const Field truth = read_survey(arguments[1], count > 5 ? arguments[5] : nullptr);
   const Moments moments = moments_of(truth.samples);
-  const Range range = petrel ? Range{0.35, 1.42} : Range{moments.mean + moments.deviation, 1e30};
+  const Range range{count > 4 ? std::strtod(arguments[4], nullptr) : moments.mean + moments.deviation, 1e30};
   std::printf("%s: %d x %d x %d, mean %g, deviation %g; %s, steer %s; seed %llu\n", arguments[1], truth.shape.inlines,
               truth.shape.crosslines, truth.shape.samples, moments.mean, moments.deviation, method.c_str(),
               steer.c_str(), static_cast<unsigned long long>(seed));
@@ -191,6 +198,8 @@ int run(int count, char** arguments) {
 
 int main(int count, char** arguments) {
   if (count >= 2) return geosis::run(count, arguments);
-  std::fprintf(stderr, "usage: fill_accuracy SURVEY.sgy [linear|polyharmonic|inverse_distance] [on|off|auto] [seed]\n");
+  std::fprintf(stderr,
+               "usage: fill_accuracy SURVEY.sgy [linear|polyharmonic|inverse_distance] [on|off|auto] [LOW]\n"
+               "                     [I0:I1,J0:J1,K0:K1]\n");
   return 2;
 }

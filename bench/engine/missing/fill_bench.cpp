@@ -147,7 +147,7 @@ void BM_Fill(benchmark::State& state) {
 
 BENCHMARK(BM_Fill)
     ->ArgNames({"method", "gaps", "threads"})
-    ->ArgsProduct({{0}, {kNone, kPoints, kCube, kTraces, kHole}, {1, 2}})
+    ->ArgsProduct({{0, 1, 2}, {kNone, kPoints, kCube, kTraces, kHole}, {1, 2}})
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
 

@@ -108,7 +108,7 @@ struct FaceState {
 /// By the face's axis and state (2 first_above + joined_above): chord types of the cell that sees the face as its side
 /// 1 (the face lies above it); the other types are those of the cell beyond. Found by simulated annealing over all such
 /// splits: the fewest states whose tunnel cannot be drawn without a cut in some of a thousand geometries
-/// (docs/adr/0016).
+/// (docs/adr/0010).
 inline constexpr std::uint8_t kOfLowerCell[3][4] = {
     {0x0b, 0x35, 0x1d, 0x22}, {0x0f, 0x10, 0x14, 0x3c}, {0x30, 0x03, 0x2f, 0x19}};
 

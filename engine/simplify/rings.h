@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -13,7 +15,7 @@ using LocalTriangle = std::array<LocalVertex, 3>;
 
 /// In the one-ring of v: the triangle (v, a, b).
 struct RingTriangle {
-  LocalVertex a = 0, b = 0;
+  LocalVertex a, b;
 };
 
 /// The one-rings of a window's vertices: for each vertex its triangles, in no order.
@@ -25,10 +27,28 @@ class Rings {
   std::span<const RingTriangle> of(LocalVertex v) const { return {&triangles_[places_[v].first], places_[v].degree}; }
 
   /// Removes the triangle on u and v from w's ring; it must be there.
-  void remove_triangle(LocalVertex w, LocalVertex u, LocalVertex v);
+  void remove_triangle(LocalVertex w, LocalVertex u, LocalVertex v) {
+    Place& place = places_[w];
+    RingTriangle* ring = &triangles_[place.first];
+    RingTriangle* found = ring;
+    while (!((found->a == u && found->b == v) || (found->a == v && found->b == u))) ++found;
+    assert(found < ring + place.degree);
+    *found = ring[--place.degree];
+  }
 
   /// Makes u out of every v in w's ring.
-  void rename(LocalVertex w, LocalVertex v, LocalVertex u);
+  void rename(LocalVertex w, LocalVertex v, LocalVertex u) {
+    const Place place = places_[w];
+    RingTriangle* ring = &triangles_[place.first];
+    // Whole steps: what lies in the room behind the last triangle is never read.
+    for (std::uint32_t step = 0; step < place.degree; step += kStep) {
+      for (std::uint32_t i = 0; i < kStep; ++i) {
+        RingTriangle& t = ring[step + i];
+        t.a = t.a == v ? u : t.a;
+        t.b = t.b == v ? u : t.b;
+      }
+    }
+  }
 
   /// Gives u the ring `merged` (which must not lie in this object) and leaves v without one.
   void merge(LocalVertex u, LocalVertex v, std::span<const RingTriangle> merged);

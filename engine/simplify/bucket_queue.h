@@ -40,7 +40,7 @@ class BucketQueue {
       free_ = entries_[place].next;
     } else {
       place = used_++;
-      if (place == entries_.size()) entries_.resize(2 * entries_.size() + 64);
+      if (place == entries_.size()) make_room();
     }
     entries_[place] = {edge, head_[bucket]};
     head_[bucket] = place;
@@ -71,6 +71,8 @@ class BucketQueue {
     QueuedEdge edge;
     std::uint32_t next;
   };
+
+  [[gnu::noinline, gnu::cold]] void make_room() { entries_.resize(2 * entries_.size() + 64); }
 
   // The upper bits of a positive float are its exponent and first mantissa bits: already a logarithmic scale.
   static std::uint32_t bucket_of(float cost) {

@@ -8,7 +8,7 @@ namespace {
 
 constexpr float kFlipCosine2 = 0.04f;  // a triangle may turn by 78 degrees
 constexpr float kThinSine2 = 1e-7f;  // squared sine of a triangle's corner: well above float32's rounding of a product
-constexpr float kOneWayCosine2 = 0.1f;     // triangles up to 72 degrees off the star's direction look one way
+constexpr float kOneWayCosine2 = 0.06f;    // triangles up to 76 degrees off the direction of their star look one way
 constexpr float kFarthestVolume2 = 0.25f;  // squared way to the plane of equal volume, in squared edge lengths
 
 bool holds(RingTriangle t, LocalVertex v) {
@@ -25,15 +25,10 @@ float to_lattice(float x) {
   return static_cast<float>(static_cast<std::int32_t>(x * kSteps + (x < 0 ? -0.5f : 0.5f))) * kLatticeStep;
 }
 
-/// How many vertices are next to both u and v.
+/// How many vertices are next to both u and v where one of them lies on the boundary.
 int count_common(LocalVertex u, bool u_open, LocalVertex v, bool v_open, const Rings& rings, VertexMarks& marks) {
   marks.clear();
   int common = 0;
-  if (!u_open && !v_open) {
-    for (const RingTriangle t : rings.of(u)) marks.set(t.a);
-    for (const RingTriangle t : rings.of(v)) common += marks.has(t.a);
-    return common;
-  }
   for (const LocalVertex w : neighbours_of(u, u_open, rings)) marks.set(w);
   for (const LocalVertex w : neighbours_of(v, v_open, rings)) common += marks.has(w);
   return common;
@@ -44,12 +39,15 @@ int count_common(LocalVertex u, bool u_open, LocalVertex v, bool v_open, const R
 bool find_merged_star(LocalVertex u, LocalVertex v, std::span<const WorkingVertex> vertices, const Rings& rings,
                       VertexMarks& marks, MergedStar& star) {
   if (rings.degree(u) + rings.degree(v) > kMaxMergedDegree + 4) return false;
+  marks.clear();
   int degree = 0;
   int shared = 0;
   std::array<RingTriangle, 2> both;
   for (const RingTriangle t : rings.of(u)) {
+    marks.set(t.a);
+    star.ring[degree] = t;
     if (!holds(t, v)) {
-      star.ring[degree++] = t;
+      ++degree;
     } else {
       if (shared == 2) return false;
       both[shared] = t;
@@ -58,7 +56,9 @@ bool find_merged_star(LocalVertex u, LocalVertex v, std::span<const WorkingVerte
   }
   if (shared == 0) return false;
   star.from_u = degree;
+  int common = 0;
   for (const RingTriangle t : rings.of(v)) {
+    common += marks.has(t.a);
     star.ring[degree] = t;
     degree += !holds(t, u);
   }
@@ -69,9 +69,12 @@ bool find_merged_star(LocalVertex u, LocalVertex v, std::span<const WorkingVerte
 
   const bool u_open = vertices[u].on_boundary;
   const bool v_open = vertices[v].on_boundary;
-  if (u_open && v_open && shared == 2) return false;
-  if (!u_open && !v_open && rings.degree(u) == 3 && rings.degree(v) == 3) return false;  // a tetrahedron
-  return count_common(u, u_open, v, v_open, rings, marks) == shared;
+  if (u_open || v_open) {
+    if (u_open && v_open && shared == 2) return false;
+    return count_common(u, u_open, v, v_open, rings, marks) == shared;
+  }
+  const bool tetrahedron = rings.degree(u) == 3 && rings.degree(v) == 3;
+  return common == shared && !tetrahedron;
 }
 
 void measure_star(const MergedStar& star, LocalVertex u, LocalVertex v, std::span<const WorkingVertex> vertices,
@@ -143,17 +146,6 @@ MovedStar move_star(const MergedStar& star, const StarShape& shape, Vec3f positi
   moved.sharp = any(off);
   moved.planes = sum_of_planes(planes);
   return moved;
-}
-
-bool vertices_meet(const MergedStar& star, std::span<const WorkingVertex> vertices) {
-  for (int i = 0; i < star.from_u; ++i) {
-    const LocalVertex p = star.ring[i].a;
-    for (int k = star.from_u; k < star.degree; ++k) {
-      const LocalVertex q = star.ring[k].a;
-      if (p != q && vertices[p].position == vertices[q].position) return true;
-    }
-  }
-  return false;
 }
 
 Vec3f snap_to_lattice(Vec3f p, const Box& bounds) {

@@ -119,9 +119,6 @@ struct MovedStar {
 
 MovedStar move_star(const MergedStar& star, const StarShape& shape, Vec3f position);
 
-/// Whether a vertex that only u had around it lies where one lies that only v had around it.
-bool vertices_meet(const MergedStar& star, std::span<const WorkingVertex> vertices);
-
 /// The lattice point next to p that lies in the box (whose corners are lattice points).
 Vec3f snap_to_lattice(Vec3f p, const Box& bounds);
 

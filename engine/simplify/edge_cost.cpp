@@ -71,7 +71,6 @@ inline Vec3<F> at_ends(Vec3<F> offset, Vec3<F> half, M at_u, M at_v) {
 struct Lanes {
   Vec3<Float4> edge;
   QuadricOf<Float4> q;
-  Mask4 on_boundary;
 };
 
 inline Lanes gather(Vec3f from, const WorkingVertex& v0, const WorkingVertex& v1, const WorkingVertex& v2,
@@ -82,10 +81,8 @@ inline Lanes gather(Vec3f from, const WorkingVertex& v0, const WorkingVertex& v1
   transpose(x, y, z, c);
   transpose(a00, a01, a02, b0);
   transpose(a11, a12, a22, b1);
-  const Mask4 flags{v0.on_boundary, v1.on_boundary, v2.on_boundary, v3.on_boundary};
   return {Vec3<Float4>{x, y, z} - all4(from),
-          {a00, a01, a02, a11, a12, a22, b0, b1, Float4{v0.b2, v1.b2, v2.b2, v3.b2}, c},
-          flags != 0};
+          {a00, a01, a02, a11, a12, a22, b0, b1, Float4{v0.b2, v1.b2, v2.b2, v3.b2}, c}};
 }
 
 inline QuadricOf<Float4> all4(const Quadric& q) {
@@ -94,16 +91,20 @@ inline QuadricOf<Float4> all4(const Quadric& q) {
           all4(q.a22), all4(q.b0),  all4(q.b1),  all4(q.b2),  all4(q.c)};
 }
 
-inline Float4 lane_costs(const QuadricOf<Float4>& u, bool u_on_boundary, const Lanes& lanes, Placement placement) {
+/// u_open is all ones or all zeros; open, the neighbours' lanes.
+inline Vec3<Float4> respect_boundary(Vec3<Float4> offset, Vec3<Float4> half, Mask4 u_open, Mask4 open) {
+  return at_ends(offset, half, u_open & ~open, open & ~u_open);
+}
+
+template <bool kMayBeOpen>
+inline Float4 lane_costs(const QuadricOf<Float4>& u, Mask4 u_open, Mask4 open, const Lanes& lanes,
+                         Placement placement) {
   const QuadricOf<Float4> sum = u + seen_from(lanes.q, lanes.edge);
   const Vec3<Float4> half = lanes.edge * geosis::all4(0.5f);
   const Middle<Float4> middle = middle_of(sum, half);
   Vec3<Float4> offset =
       placement == Placement::optimal ? best_offset(sum, lanes.edge, middle) : cheaper_end(half, middle);
-  if (u_on_boundary || any(lanes.on_boundary)) {
-    const Mask4 u_open = Mask4{} - static_cast<std::int32_t>(u_on_boundary);
-    offset = at_ends(offset, half, u_open & ~lanes.on_boundary, lanes.on_boundary & ~u_open);
-  }
+  if (kMayBeOpen) offset = respect_boundary(offset, half, u_open, open);
   const Float4 value = middle.value + dot(middle.gradient + middle.gradient + sum.times(offset), offset);
   return select(value > 0.0f, value, Float4{}) + sum.trace() * dot(lanes.edge, lanes.edge) * kLengthWeight;
 }
@@ -127,8 +128,16 @@ void edge_costs(std::span<const WorkingVertex> vertices, LocalVertex u, std::spa
     const auto neighbour = [&](std::size_t i) -> const WorkingVertex& {
       return vertices[neighbours[std::min(first + i, last)]];
     };
-    const Lanes lanes = gather(from.position, neighbour(0), neighbour(1), neighbour(2), neighbour(3));
-    const Float4 result = lane_costs(quadric, from.on_boundary, lanes, placement);
+    const WorkingVertex &v0 = neighbour(0), &v1 = neighbour(1), &v2 = neighbour(2), &v3 = neighbour(3);
+    const Lanes lanes = gather(from.position, v0, v1, v2, v3);
+    Float4 result;
+    if (from.on_boundary | v0.on_boundary | v1.on_boundary | v2.on_boundary | v3.on_boundary) {
+      const Mask4 open = Mask4{v0.on_boundary, v1.on_boundary, v2.on_boundary, v3.on_boundary} != 0;
+      const Mask4 u_open = Mask4{} - static_cast<std::int32_t>(from.on_boundary);
+      result = lane_costs<true>(quadric, u_open, open, lanes, placement);
+    } else {
+      result = lane_costs<false>(quadric, Mask4{}, Mask4{}, lanes, placement);
+    }
     std::memcpy(&costs[first], &result, sizeof(result));
   }
 }

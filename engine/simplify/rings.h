@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -40,13 +41,13 @@ class Rings {
   void rename(LocalVertex w, LocalVertex v, LocalVertex u) {
     const Place place = places_[w];
     RingTriangle* ring = &triangles_[place.first];
-    // Whole steps: what lies in the room behind the last triangle is never read.
-    for (std::uint32_t step = 0; step < place.degree; step += kStep) {
-      for (std::uint32_t i = 0; i < kStep; ++i) {
-        RingTriangle& t = ring[step + i];
-        t.a = t.a == v ? u : t.a;
-        t.b = t.b == v ? u : t.b;
-      }
+    // Whole steps of one register: what lies in the room behind the last triangle is never read.
+    using Step = LocalVertex __attribute__((vector_size(kStep * sizeof(RingTriangle))));
+    for (std::uint32_t i = 0; i < place.degree; i += kStep) {
+      Step step;
+      std::memcpy(&step, ring + i, sizeof(step));
+      step = step == v ? Step{} + u : step;
+      std::memcpy(ring + i, &step, sizeof(step));
     }
   }
 

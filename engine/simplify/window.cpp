@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <limits>
 #include <utility>
 
 #include "engine/simplify/edge_cost.h"
 #include "engine/simplify/first_star.h"
+#include "engine/simplify/fold_check.h"
 
 namespace geosis {
 namespace {
@@ -17,6 +19,9 @@ constexpr float kFreshShare = 0.5f;
 
 /// After a collapse only edges up to this multiple of the cheapest one around are worth queueing.
 constexpr float kQueueLimit = 2.0f;
+
+constexpr int kChoices = 8;          // edges to choose from: the paper's Table 1
+constexpr int kMostRefusals = 1000;  // in a row; what is left then will hardly collapse
 
 constexpr std::int64_t kTrianglesBetweenReports = 8192;
 
@@ -58,11 +63,15 @@ bool Window::reduce(const Goal& goal, const Rules& rules, Watch& watch) {
   goal_ = goal;
   rules_ = rules;
   capped_ = false;
+  return rules.strategy == Strategy::greedy ? reduce_greedily(watch) : reduce_by_multiple_choice(watch);
+}
+
+bool Window::reduce_greedily(Watch& watch) {
   if (!std::exchange(queued_, true)) queue_all_edges();
-  while (triangles_ > goal.triangles) {
+  while (triangles_ > goal_.triangles) {
     const std::int64_t before = triangles_;
     if (!collapse_cheapest_first(watch)) return false;
-    if (triangles_ <= goal.triangles) break;
+    if (triangles_ <= goal_.triangles) break;
     // The queue ran empty. What was refused or not worth queueing gets another chance, as long as that leads anywhere.
     queue_all_edges();
     if (before - triangles_ <= before / 1000) break;
@@ -119,6 +128,40 @@ bool Window::collapse_cheapest_first(Watch& watch) {
   return watch.removed(reported - triangles_);
 }
 
+/// The paper's rule: of 8 random edges the cheapest collapses, whatever the others of the window cost.
+bool Window::reduce_by_multiple_choice(Watch& watch) {
+  RandomEdges random(rules_.seed);
+  for (std::size_t v = 0; v < vertices_.size(); ++v) {
+    if (!vertices_[v].locked) random.add(static_cast<LocalVertex>(v));
+  }
+  std::int64_t reported = triangles_;
+  for (int refused = 0; triangles_ > goal_.triangles && refused < kMostRefusals;) {
+    const QueuedEdge edge = cheapest_of_random(random);
+    refused = edge.u != edge.v && try_collapse(edge.u, edge.v) ? 0 : refused + 1;
+    if (reported - triangles_ < kTrianglesBetweenReports) continue;
+    if (!watch.removed(reported - triangles_)) return false;
+    reported = triangles_;
+  }
+  return watch.removed(reported - triangles_);
+}
+
+/// u == v when none was found.
+QueuedEdge Window::cheapest_of_random(RandomEdges& random) {
+  QueuedEdge best{0, 0, 0, 0};
+  float least = std::numeric_limits<float>::infinity();
+  Costs costs;
+  for (int i = 0; i < kChoices; ++i) {
+    LocalVertex u, v;
+    if (!random.draw(rings_, u, v)) break;
+    if (vertices_[v].locked || rings_.degree(u) > kMaxDegree || rings_.degree(v) > kMaxDegree) continue;
+    edge_costs(vertices_, u, std::span(&v, 1), costs, rules_.placement);
+    if (!(costs[0] < least)) continue;
+    least = costs[0];
+    best = {u, v, 0, 0};
+  }
+  return best;
+}
+
 /// weight    of the planes whose squared distances the cost sums up: an area.
 bool Window::within_goal(float cost, float weight) {
   capped_ = capped_ || cost > goal_.max_cost || cost > goal_.max_error * goal_.max_error * weight;
@@ -141,10 +184,10 @@ bool Window::try_collapse(LocalVertex u, LocalVertex v) {
   const Vec3f position = snap_to_lattice(kept.position + place, bounds_);
   const MovedStar moved = move_star(star, shape, position);
   if (!moved.sound) return false;
-  if (moved.sharp && vertices_meet(star, vertices_)) return false;
   Quadric merged = seen_from(sum, kept.position - position);
   merged.c = std::max(merged.c, 0.0f);
   if (!within_goal(merged.c, merged.trace())) return false;
+  if (moved.sharp && folds_over(star, u, v, position, vertices_, rings_, marks_)) return false;
 
   max_cost_ = std::max(max_cost_, merged.c);
   // The planes that hold a boundary would fade away with the memory.

@@ -6,6 +6,7 @@
 
 #include "engine/simplify/bucket_queue.h"
 #include "engine/simplify/collapse.h"
+#include "engine/simplify/random_edges.h"
 #include "engine/simplify/rings.h"
 #include "engine/simplify/rules.h"
 #include "engine/simplify/watch.h"
@@ -60,7 +61,10 @@ class Window {
   void queue_all_edges();
   void queue_edges_around(LocalVertex u);
   void push(LocalVertex u, LocalVertex v, float cost);
+  bool reduce_greedily(Watch& watch);
   bool collapse_cheapest_first(Watch& watch);
+  bool reduce_by_multiple_choice(Watch& watch);
+  QueuedEdge cheapest_of_random(RandomEdges& random);
   bool try_collapse(LocalVertex u, LocalVertex v);
   bool within_goal(float cost, float weight);
   void commit(LocalVertex u, LocalVertex v, const MergedStar& star);

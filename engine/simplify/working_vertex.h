@@ -25,7 +25,6 @@ struct alignas(64) WorkingVertex {
   std::int32_t origin;  ///< vertex of M0
   bool on_boundary;
   bool locked;  ///< for this pass: a triangle leaves the window
-  bool sharp;   ///< the triangles around do not look one way, or those around a neighbour did not
 
   Quadric quadric() const { return {a00, a01, a02, a11, a12, a22, b0, b1, b2, c}; }
 

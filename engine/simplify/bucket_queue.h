@@ -58,10 +58,17 @@ class BucketQueue {
     Entry& entry = entries_[place];
     edge = entry.edge;
     head_[bucket] = entry.next;
+    last_popped_next_ = entry.next;
     if (entry.next == kNone) occupied_[lowest_word_] &= occupied_[lowest_word_] - 1;
     entry.next = free_;
     free_ = place;
     return true;
+  }
+
+  /// The edge that the next pop will most likely take; nothing when that is not easy to say. For prefetching.
+  const QueuedEdge* likely_next() const {
+    const std::uint32_t place = last_popped_next_;
+    return place == kNone ? nullptr : &entries_[place].edge;
   }
 
  private:
@@ -87,6 +94,7 @@ class BucketQueue {
   std::uint32_t free_ = kNone;                         // taken entries, chained for reuse
   std::array<std::uint32_t, kBuckets> head_;           // first entry of each bucket
   std::array<std::uint64_t, kBuckets / 64> occupied_;  // one bit a bucket
+  std::uint32_t last_popped_next_ = kNone;             // what lay behind the last popped entry in its bucket
   std::uint32_t lowest_word_ = 0;                      // no bit is set before this word
 };
 

@@ -22,7 +22,7 @@ namespace {
 constexpr float kLargestCoordinate = 131'072;  // voxels; beyond, float32 does not hold all lattice points
 
 /// Voxels. At 1/4 and 1/16, where levels should keep their count, next to nothing comes near the cap.
-constexpr double kErrorCapAtRatioOne = 0.5;
+constexpr double kErrorCapAtRatioOne = 0.12;
 
 const Error kCancelled = {ErrorCode::cancelled, "levels of detail: cancelled"};
 

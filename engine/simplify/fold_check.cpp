@@ -38,28 +38,9 @@ struct Bounds {
   }
 };
 
-bool has_corner(const Corners& t, LocalVertex id) {
-  return t[0].id == id || t[1].id == id || t[2].id == id;
+bool strictly_same_side(double a, double b) {
+  return (a > 0 && b > 0) || (a < 0 && b < 0);
 }
-
-/// Where t lies to s's plane, but for the corners that it has in common with s.
-struct Sides {
-  int shared = 0, above = 0, below = 0, on = 0;
-
-  Sides(const Corners& t, const Corners& s, Steps normal_of_s) {
-    for (const Corner& corner : t) {
-      if (has_corner(s, corner.id)) {
-        ++shared;
-        continue;
-      }
-      const double side = dot(normal_of_s, corner.at - s[0].at);
-      above += side > 0;
-      below += side < 0;
-      on += side == 0;
-    }
-  }
-  bool is_strictly_one() const { return on == 0 && (above == 0 || below == 0); }
-};
 
 LatticeTriangle on_lattice(const Corners& t) {
   LatticeTriangle result;
@@ -73,7 +54,7 @@ Steps normal_of(const Corners& t) {
   return cross(t[1].at - t[0].at, t[2].at - t[0].at);
 }
 
-/// The star's triangles once moved.
+/// The star's triangles once moved: corner 0 of each is the star's vertex, the origin.
 class PlacedStar {
  public:
   PlacedStar(const MergedStar& star, LocalVertex u, Vec3f position, std::span<const WorkingVertex> vertices)
@@ -81,7 +62,7 @@ class PlacedStar {
     for (int i = 0; i < degree_; ++i) {
       const auto [a, b] = star.ring[i];
       triangles_[i] = {{{u, {}}, corner(a), corner(b)}};
-      normals_[i] = normal_of(triangles_[i]);
+      normals_[i] = cross(triangles_[i][1].at, triangles_[i][2].at);
       bounds_[i] = Bounds(triangles_[i]);
     }
   }
@@ -93,12 +74,13 @@ class PlacedStar {
   bool meets_itself() const {
     for (int i = 0; i < degree_; ++i) {
       for (int k = i + 1; k < degree_; ++k) {
-        if (meets(i, triangles_[k], normals_[k])) return true;
+        if (triangles_meet(i, k)) return true;
       }
     }
     return false;
   }
 
+  /// other   without the star's vertex.
   bool meets(const Corners& other) const {
     const Bounds bounds(other);
     const Steps normal = normal_of(other);
@@ -109,11 +91,31 @@ class PlacedStar {
   }
 
  private:
+  /// Two triangles on one edge meet beyond it only when they lie in one plane, folded onto each other.
+  bool is_folded(int i, Steps normal, const Corner& third) const {
+    return dot(normals_[i], normal) < 0 && dot(normals_[i], third.at) == 0;
+  }
+
+  bool triangles_meet(int i, int k) const {
+    const auto& [centre, a, b] = triangles_[i];
+    const auto& [same, c, d] = triangles_[k];
+    if (c.id == b.id) return is_folded(i, normals_[k], d);
+    if (d.id == a.id) return is_folded(i, normals_[k], c);
+    if (strictly_same_side(dot(normals_[i], c.at), dot(normals_[i], d.at))) return false;
+    if (strictly_same_side(dot(normals_[k], a.at), dot(normals_[k], b.at))) return false;
+    return triangles_intersect(on_lattice(triangles_[i]), on_lattice(triangles_[k]));
+  }
+
   bool meets(int i, const Corners& other, Steps normal) const {
-    const Sides sides(other, triangles_[i], normals_[i]);
-    if (sides.is_strictly_one()) return false;
-    if (sides.shared == 2) return dot(normals_[i], normal) < 0;  // in one plane: folded onto each other, or not
-    if (Sides(triangles_[i], other, normal).is_strictly_one()) return false;
+    const auto& [centre, a, b] = triangles_[i];
+    const Corner* apart[3];  // other's corners that are not the star triangle's
+    int count = 0;
+    for (const Corner& corner : other) {
+      apart[count] = &corner;
+      count += corner.id != a.id && corner.id != b.id;
+    }
+    if (count == 1) return is_folded(i, normal, *apart[0]);
+    if (count == 2 && strictly_same_side(dot(normals_[i], apart[0]->at), dot(normals_[i], apart[1]->at))) return false;
     return triangles_intersect(on_lattice(triangles_[i]), on_lattice(other));
   }
 

@@ -110,6 +110,8 @@ PassOptions Reducer::plan_pass(const Goal& goal, bool first, bool stuck) const {
   if (stuck || (!first && ratio > 0.8 * kKeepInLastPass)) return pass;
   const double keep = std::max(kKeepInPass, std::min(ratio / kKeepInLastPass, std::sqrt(ratio)));
   pass.goal.triangles = static_cast<std::int64_t>(keep * now);
+  // What the first pass folds over is of M0's size, and later collapses smooth nearly all of it out.
+  pass.goal.refuse_folds = mesh_.m0() == nullptr;
   pass.window_size = options_.sizes.pass;
   pass.last = false;
   return pass;

@@ -24,7 +24,8 @@ struct Rules {
 struct Goal {
   std::int64_t triangles = 0;                                ///< to leave
   float max_cost = std::numeric_limits<float>::infinity();   ///< of a collapse
-  float max_error = std::numeric_limits<float>::infinity();  ///< of a collapse, in voxels: see error_of
+  float max_error = std::numeric_limits<float>::infinity();  ///< of a collapse, in voxels; estimated
+  bool refuse_folds = true;                                  ///< see folds_over
 };
 
 }  // namespace geosis

@@ -114,10 +114,18 @@ void Window::push(LocalVertex u, LocalVertex v, float cost) {
   queue_.push({u, v, version_[u], version_[v]}, cost);
 }
 
+void Window::prefetch(const QueuedEdge& edge) const {
+  for (const LocalVertex v : {edge.u, edge.v}) {
+    __builtin_prefetch(&vertices_[v]);
+    rings_.prefetch(v);
+  }
+}
+
 bool Window::collapse_cheapest_first(Watch& watch) {
   std::int64_t reported = triangles_;
   QueuedEdge edge;
   while (triangles_ > goal_.triangles && queue_.pop(edge)) {
+    if (const QueuedEdge* next = queue_.likely_next()) prefetch(*next);
     if (version_[edge.u] != edge.version_u || version_[edge.v] != edge.version_v) continue;
     if (!try_collapse(edge.u, edge.v)) continue;
     queue_edges_around(edge.u);
@@ -187,7 +195,7 @@ bool Window::try_collapse(LocalVertex u, LocalVertex v) {
   Quadric merged = seen_from(sum, kept.position - position);
   merged.c = std::max(merged.c, 0.0f);
   if (!within_goal(merged.c, merged.trace())) return false;
-  if (moved.sharp && folds_over(star, u, v, position, vertices_, rings_, marks_)) return false;
+  if (goal_.refuse_folds && moved.sharp && folds_over(star, u, v, position, vertices_, rings_, marks_)) return false;
 
   max_cost_ = std::max(max_cost_, merged.c);
   // The planes that hold a boundary would fade away with the memory.

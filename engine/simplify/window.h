@@ -63,6 +63,7 @@ class Window {
   void push(LocalVertex u, LocalVertex v, float cost);
   bool reduce_greedily(Watch& watch);
   bool collapse_cheapest_first(Watch& watch);
+  void prefetch(const QueuedEdge& edge) const;
   bool reduce_by_multiple_choice(Watch& watch);
   QueuedEdge cheapest_of_random(RandomEdges& random);
   bool try_collapse(LocalVertex u, LocalVertex v);

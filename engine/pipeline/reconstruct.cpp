@@ -77,8 +77,8 @@ Result<void> check_attribute_volume(const ReconstructInput& input, const Reconst
 Result<LodHierarchy> simplify(IndexedMesh m0, const Run& run) {
   const StageTimer timer(run.timings.simplify);
   BuildLodsOptions build;
-  build.ratios = run.options.ratios;
-  if (build.ratios.empty() || build.ratios.front() != 1) build.ratios.insert(build.ratios.begin(), 1);
+  build.levels = by_ratio(run.options.ratios);
+  if (build.levels.empty() || build.levels.front().ratio != 1) build.levels.insert(build.levels.begin(), {.ratio = 1});
   build.threads = run.options.threads;
   return build_lods(std::move(m0), build, run.progress);
 }

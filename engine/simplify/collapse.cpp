@@ -1,6 +1,5 @@
 #include "engine/simplify/collapse.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -9,73 +8,16 @@ namespace {
 
 constexpr float kFlipCosine2 = 0.04f;  // a triangle may turn by 78 degrees
 constexpr float kThinSine2 = 1e-7f;  // squared sine of a triangle's corner: well above float32's rounding of a product
+constexpr float kOneWayCosine2 = 0.06f;    // triangles up to 76 degrees off the direction of their star look one way
+constexpr float kFarthestVolume2 = 0.25f;  // squared way to the plane of equal volume, in squared edge lengths
 
 bool holds(RingTriangle t, LocalVertex v) {
   return t.a == v || t.b == v;
 }
 
-/// The star's triangles side by side: a and b stay, the third vertex goes from `from` to a common place.
-constexpr std::size_t kLanes = 4;
-constexpr std::size_t kRoom = (kMaxMergedDegree + kLanes) / kLanes * kLanes;
-struct StarLanes {
-  using Row = std::array<float, kRoom>;
-  struct Points {
-    Row x, y, z;
-    void set(std::size_t i, Vec3f p) { x[i] = p.x, y[i] = p.y, z[i] = p.z; }
-    Vec3f operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
-  };
-  alignas(16) Points a, b, from;
-  alignas(16) Points normal;  // after the move
-  alignas(16) Row weight;     // that makes the normal an area-weighted plane
-  std::size_t used = 0;       // a multiple of kLanes; the last triangle fills it up
-};
-
-void gather(const MergedStar& star, LocalVertex u, LocalVertex v, std::span<const WorkingVertex> vertices,
-            StarLanes& lanes) {
-  const auto degree = static_cast<std::size_t>(star.degree);
-  lanes.used = (degree + kLanes - 1) / kLanes * kLanes;
-  for (std::size_t i = 0; i < lanes.used; ++i) {
-    const std::size_t k = std::min(i, degree - 1);
-    lanes.a.set(i, vertices[star.ring[k].a].position);
-    lanes.b.set(i, vertices[star.ring[k].b].position);
-    lanes.from.set(i, vertices[k < static_cast<std::size_t>(star.from_u) ? u : v].position);
-  }
-}
-
-/// Moves the triangles first ... first + kLanes - 1; false if one turns too far or gets too thin. No branches: four
-/// lanes are one vector.
-bool move_triangles(StarLanes& lanes, std::size_t first, Vec3f position) {
-  std::int32_t bad = 0;
-  for (std::size_t i = first; i < first + kLanes; ++i) {
-    const Vec3f a = lanes.a[i];
-    const Vec3f side = lanes.b[i] - a;
-    const Vec3f arm = position - a;
-    const Vec3f before = cross(side, lanes.from[i] - a);
-    const Vec3f after = cross(side, arm);
-    const float cosine = dot(before, after);
-    const float before2 = dot(before, before);
-    const float after2 = dot(after, after);
-    bad |= static_cast<std::int32_t>(cosine <= 0.0f);
-    bad |= static_cast<std::int32_t>(cosine * cosine < kFlipCosine2 * before2 * after2);
-    bad |= static_cast<std::int32_t>(after2 <= kThinSine2 * dot(side, side) * dot(arm, arm));
-    lanes.normal.x[i] = after.x;
-    lanes.normal.y[i] = after.y;
-    lanes.normal.z[i] = after.z;
-    lanes.weight[i] = 0.5f / (std::sqrt(after2) + 1e-20f);
-  }
-  return bad == 0;
-}
-
-/// Whether a vertex that only u had around it lies where one lies that only v had around it.
-bool vertices_meet(const MergedStar& star, std::span<const WorkingVertex> vertices) {
-  for (int i = 0; i < star.from_u; ++i) {
-    const LocalVertex p = star.ring[i].a;
-    for (int k = star.from_u; k < star.degree; ++k) {
-      const LocalVertex q = star.ring[k].a;
-      if (p != q && vertices[p].position == vertices[q].position) return true;
-    }
-  }
-  return false;
+Mask4 lanes_below(int first, int end) {
+  const Mask4 lane{first, first + 1, first + 2, first + 3};
+  return lane < end;
 }
 
 float to_lattice(float x) {
@@ -83,74 +25,126 @@ float to_lattice(float x) {
   return static_cast<float>(static_cast<std::int32_t>(x * kSteps + (x < 0 ? -0.5f : 0.5f))) * kLatticeStep;
 }
 
+/// How many vertices are next to both u and v where one of them lies on the boundary.
+int count_common(LocalVertex u, bool u_open, LocalVertex v, bool v_open, const Rings& rings, VertexMarks& marks) {
+  marks.clear();
+  int common = 0;
+  for (const LocalVertex w : neighbours_of(u, u_open, rings)) marks.set(w);
+  for (const LocalVertex w : neighbours_of(v, v_open, rings)) common += marks.has(w);
+  return common;
+}
+
 }  // namespace
-
-Neighbours neighbours_of(LocalVertex v, bool on_boundary, const Rings& rings) {
-  const auto ring = rings.of(v);
-  assert(ring.size() <= kMaxDegree);
-  Neighbours result;
-  for (const RingTriangle t : ring) result.ids[result.count++] = t.a;
-  if (!on_boundary) return result;
-  // An open fan: the last of its vertices is nobody's a.
-  for (const RingTriangle t : ring) {
-    const bool known = std::any_of(ring.begin(), ring.end(), [&](RingTriangle other) { return other.a == t.b; });
-    if (!known) result.ids[result.count++] = t.b;
-  }
-  return result;
-}
-
-void VertexMarks::reset(std::size_t vertices) {
-  mark_.assign(vertices, 0);
-  current_ = 0;
-}
-
-void VertexMarks::clear() {
-  if (++current_ != 0) return;
-  std::fill(mark_.begin(), mark_.end(), std::uint16_t{0});
-  current_ = 1;
-}
 
 bool find_merged_star(LocalVertex u, LocalVertex v, std::span<const WorkingVertex> vertices, const Rings& rings,
                       VertexMarks& marks, MergedStar& star) {
   if (rings.degree(u) + rings.degree(v) > kMaxMergedDegree + 4) return false;
-  star.degree = star.shared = 0;
+  marks.clear();
+  int degree = 0;
+  int shared = 0;
+  std::array<RingTriangle, 2> both;
   for (const RingTriangle t : rings.of(u)) {
+    marks.set(t.a);
+    star.ring[degree] = t;
     if (!holds(t, v)) {
-      star.ring[star.degree++] = t;
+      ++degree;
     } else {
-      if (star.shared == 2) return false;
-      star.opposite[star.shared++] = t.a == v ? t.b : t.a;
+      if (shared == 2) return false;
+      both[shared] = t;
+      star.opposite[shared++] = t.a == v ? t.b : t.a;
     }
   }
-  if (star.shared == 0) return false;
-  star.from_u = star.degree;
+  if (shared == 0) return false;
+  star.from_u = degree;
+  int common = 0;
   for (const RingTriangle t : rings.of(v)) {
-    if (!holds(t, u)) star.ring[star.degree++] = t;
+    common += marks.has(t.a);
+    star.ring[degree] = t;
+    degree += !holds(t, u);
   }
-  if (star.degree == 0 || star.degree > kMaxMergedDegree) return false;
+  if (degree == 0 || degree > kMaxMergedDegree) return false;
+  for (int i = 0; i < shared; ++i) star.ring[degree + i] = both[i];
+  star.degree = degree;
+  star.shared = shared;
 
   const bool u_open = vertices[u].on_boundary;
   const bool v_open = vertices[v].on_boundary;
-  if (u_open && v_open && star.shared == 2) return false;
-  if (!u_open && !v_open && rings.degree(u) == 3 && rings.degree(v) == 3) return false;  // a tetrahedron
-  marks.clear();
-  for (const LocalVertex w : neighbours_of(u, u_open, rings)) marks.set(w);
-  int common = 0;
-  for (const LocalVertex w : neighbours_of(v, v_open, rings)) common += marks.has(w);
-  return common == star.shared;
+  if (u_open || v_open) {
+    if (u_open && v_open && shared == 2) return false;
+    return count_common(u, u_open, v, v_open, rings, marks) == shared;
+  }
+  const bool tetrahedron = rings.degree(u) == 3 && rings.degree(v) == 3;
+  return common == shared && !tetrahedron;
 }
 
-MovedStar move_star(const MergedStar& star, LocalVertex u, LocalVertex v, Vec3f position,
-                    std::span<const WorkingVertex> vertices) {
-  StarLanes lanes;
-  gather(star, u, v, vertices, lanes);
-  MovedStar moved;
-  for (std::size_t first = 0; first < lanes.used; first += kLanes) {
-    if (!move_triangles(lanes, first, position)) return moved;
+void measure_star(const MergedStar& star, LocalVertex u, LocalVertex v, std::span<const WorkingVertex> vertices,
+                  StarShape& shape) {
+  const int all = star.degree + star.shared;
+  const Vec3<Float4> at_u = all4(vertices[u].position);
+  const Vec3<Float4> at_v = all4(vertices[v].position);
+  Vec3<Float4> all_normals{}, normals_of_v{};
+  for (int group = 0, first = 0; first < all; ++group, first += kLanes) {
+    const auto triangle = [&](int i) { return star.ring[std::min(first + i, all - 1)]; };
+    const RingTriangle t0 = triangle(0), t1 = triangle(1), t2 = triangle(2), t3 = triangle(3);
+    const Vec3<Float4> a = positions_of(vertices[t0.a], vertices[t1.a], vertices[t2.a], vertices[t3.a]);
+    const Vec3<Float4> b = positions_of(vertices[t0.b], vertices[t1.b], vertices[t2.b], vertices[t3.b]);
+    const Mask4 from_v = lanes_below(first, star.degree) & ~lanes_below(first, star.from_u);
+    const Vec3<Float4> side = b - a;
+    const Vec3<Float4> normal = cross(side, select(from_v, at_v, at_u) - a);
+    all_normals = all_normals + select(lanes_below(first, all), normal, {});
+    normals_of_v = normals_of_v + select(from_v, normal, {});
+    shape.a[group] = a;
+    shape.side[group] = side;
+    shape.normal[group] = normal;
   }
-  if (vertices_meet(star, vertices)) return moved;
-  for (int i = 0; i < star.degree; ++i) add_plane(moved.planes, lanes.normal[i], lanes.weight[i]);
+  shape.all_normals = sum(all_normals);
+  shape.normals_of_v = sum(normals_of_v);
+}
+
+// When the vertex of triangle (w, a, b) moves from w to p, it sweeps a sixth of (p - w) . normal. Over the star that is
+// linear in p, so the places of equal volume are a plane, at right angles to the sum of the normals.
+Vec3f keep_volume(const StarShape& shape, Vec3f edge, Vec3f place) {
+  const float length2 = dot(shape.all_normals, shape.all_normals);
+  const float missing = dot(shape.normals_of_v, edge) - dot(shape.all_normals, place);
+  if (!(length2 > 0) || missing * missing > kFarthestVolume2 * dot(edge, edge) * length2) return place;
+  return place + shape.all_normals * (missing / length2);
+}
+
+MovedStar move_star(const MergedStar& star, const StarShape& shape, Vec3f position) {
+  const Vec3<Float4> to = all4(position);
+  std::array<StarShape::Row, StarShape::kGroups> normals;
+  std::array<Float4, StarShape::kGroups> length2;
+  QuadricOf<Float4> planes;
+  Vec3<Float4> direction{};
+  MovedStar moved;
+  for (int group = 0, first = 0; first < star.degree; ++group, first += kLanes) {
+    const Mask4 inside = lanes_below(first, star.degree);
+    const Vec3<Float4> arm = to - shape.a[group];
+    const Vec3<Float4> side = shape.side[group];
+    const Vec3<Float4> before = shape.normal[group];
+    const Vec3<Float4> after = cross(side, arm);
+    const Float4 cosine = dot(before, after);
+    const Float4 after2 = dot(after, after);
+    const Mask4 turned = (cosine <= 0.0f) | (cosine * cosine < dot(before, before) * after2 * kFlipCosine2);
+    const Mask4 thin = after2 <= dot(side, side) * dot(arm, arm) * kThinSine2;
+    if (any((turned | thin) & inside)) return moved;
+    Float4 length = after2;
+    for (int i = 0; i < kLanes; ++i) length[i] = std::sqrt(after2[i]);
+    add_plane(planes, after, select(inside, 0.5f / (length + 1e-20f), Float4{}));
+    direction = direction + select(inside, after, {});
+    normals[group] = after;
+    length2[group] = after2;
+  }
+  const Vec3<Float4> one_way = all4(sum(direction));
+  const Float4 one_way2 = dot(one_way, one_way) * kOneWayCosine2;
+  Mask4 off{};
+  for (int group = 0, first = 0; first < star.degree; ++group, first += kLanes) {
+    const Float4 cosine = dot(Vec3<Float4>(normals[group]), one_way);
+    off |= lanes_below(first, star.degree) & ((cosine <= 0.0f) | (cosine * cosine < one_way2 * length2[group]));
+  }
   moved.sound = true;
+  moved.sharp = any(off);
+  moved.planes = sum_of_planes(planes);
   return moved;
 }
 

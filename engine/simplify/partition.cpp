@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <numeric>
 #include <utility>
 
@@ -19,6 +20,21 @@ struct Range {
 
 Range chunk_of(std::size_t size, std::size_t chunk) {
   return {size * chunk / kChunks, size * (chunk + 1) / kChunks};
+}
+
+/// Calls visit(v) for every vertex of one chunk of the mesh's segments, in order.
+template <class Visit>
+void for_vertices(const WorkingMesh& mesh, std::size_t chunk, const Visit& visit) {
+  const auto [first, last] = chunk_of(mesh.vertices(), chunk);
+  std::size_t before = 0;  // live vertices in the segments so far
+  for (const auto& [begin, end] : mesh.segments()) {
+    const std::size_t size = end - begin;
+    if (before >= last) return;
+    const std::size_t from = std::max(first, before) - before;
+    const std::size_t to = std::min(last, before + size) - before;
+    for (std::size_t i = std::min(from, size); i < to; ++i) visit(begin + i);
+    before += size;
+  }
 }
 
 /// A cube of 2^bits cells an axis over the mesh; the cells are numbered in Morton order from a shifted origin.
@@ -67,40 +83,62 @@ int grid_bits(std::size_t vertices) {
   return bits;
 }
 
-std::vector<std::int32_t> morton_order(const WorkingMesh& mesh, std::uint32_t pass, int threads) {
-  const std::size_t vertices = mesh.vertices.size();
-  const CellGrid grid(mesh.bounds, grid_bits(vertices), pass);
-  std::vector<std::uint32_t> keys(vertices);
-  parallel_for(kChunks, threads, [&](std::size_t chunk) {
-    const auto [begin, end] = chunk_of(vertices, chunk);
-    for (std::size_t v = begin; v < end; ++v) keys[v] = grid.key(mesh.vertices[v].position);
-  });
-  std::vector<std::uint32_t> next(grid.cells() + 1, 0);
-  for (const std::uint32_t key : keys) ++next[key + 1];
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  std::vector<std::int32_t> order(vertices);
-  for (std::size_t v = 0; v < vertices; ++v) order[next[keys[v]]++] = static_cast<std::int32_t>(v);
-  return order;
-}
+/// Vertices in the order of their cells, and in a cell in the mesh's order: a stable counting sort in chunks.
+class MortonSort {
+ public:
+  MortonSort(const WorkingMesh& mesh, std::uint32_t pass)
+      : mesh_(mesh), grid_(mesh.bounds(), grid_bits(mesh.vertices()), pass), keys_(mesh.slots()) {}
 
-std::vector<std::int32_t> inverse(const std::vector<std::int32_t>& order) {
-  std::vector<std::int32_t> place(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<std::int32_t>(i);
-  return place;
-}
+  void run(int threads, Buffer<std::int32_t>& order, Buffer<std::int32_t>& place) {
+    next_.assign(kChunks * grid_.cells(), 0);
+    parallel_for(kChunks, threads, [&](std::size_t chunk) {
+      std::uint32_t* count = &next_[chunk * grid_.cells()];
+      for_vertices(mesh_, chunk, [&](std::size_t v) { ++count[keys_[v] = grid_.key(mesh_.position(v))]; });
+    });
+    sum_up();
+    parallel_for(kChunks, threads, [&](std::size_t chunk) {
+      std::uint32_t* next = &next_[chunk * grid_.cells()];
+      for_vertices(mesh_, chunk, [&](std::size_t v) {
+        const std::uint32_t at = next[keys_[v]]++;
+        order[at] = static_cast<std::int32_t>(v);
+        place[v] = static_cast<std::int32_t>(at);
+      });
+    });
+  }
+
+ private:
+  /// Turns counts into the places where each chunk's next vertex of a cell goes.
+  void sum_up() {
+    std::uint32_t sum = 0;
+    for (std::size_t cell = 0; cell < grid_.cells(); ++cell) {
+      for (std::size_t chunk = 0; chunk < kChunks; ++chunk) {
+        sum += std::exchange(next_[chunk * grid_.cells() + cell], sum);
+      }
+    }
+  }
+
+  const WorkingMesh& mesh_;
+  const CellGrid grid_;
+  Buffer<std::uint32_t> keys_;
+  std::vector<std::uint32_t> next_;  // (chunks, cells)
+};
 
 /// Sorts triangles to windows: a stable counting sort in chunks, for those inside and those that cross at once.
 class TriangleSort {
  public:
-  TriangleSort(const WorkingMesh& mesh, const std::vector<std::int32_t>& place, Partition& partition)
-      : mesh_(mesh), place_(place), partition_(partition), windows_(static_cast<std::size_t>(partition.windows)) {}
+  TriangleSort(std::span<const Triangle> triangles, const Buffer<std::int32_t>& place, Partition& partition)
+      : triangles_(triangles),
+        place_(place),
+        partition_(partition),
+        shift_(std::countr_zero(static_cast<std::uint32_t>(partition.window_size))),
+        windows_(static_cast<std::size_t>(partition.windows)) {}
 
   void run(int threads) {
     inside_.assign(kChunks * windows_, 0);
     crossing_.assign(kChunks * windows_, 0);
     parallel_for(kChunks, threads, [&](std::size_t chunk) { count(chunk); });
-    partition_.triangles.resize(sum_up(inside_, partition_.first_triangle));
-    partition_.crossing.resize(sum_up(crossing_, partition_.first_crossing));
+    partition_.triangles = Buffer<LocalTriangle>(sum_up(inside_, partition_.first_triangle) + 1);
+    partition_.crossing = Buffer<Triangle>(sum_up(crossing_, partition_.first_crossing) + 1);
     parallel_for(kChunks, threads, [&](std::size_t chunk) { place_triangles(chunk); });
   }
 
@@ -113,19 +151,17 @@ class TriangleSort {
   };
 
   Placed placed(std::size_t t) const {
-    const auto& [a, b, c] = mesh_.triangles[t];
+    const auto& [a, b, c] = triangles_[t];
     const Triangle triangle{place_[a], place_[b], place_[c]};
-    const std::int32_t window = triangle[0] / partition_.window_size;
-    const std::int32_t first = partition_.first_vertex(window);
-    const auto here = [&](std::int32_t v) { return v >= first && v < first + partition_.window_size; };
-    return {triangle, window, here(triangle[1]) && here(triangle[2])};
+    const bool inside = (((triangle[0] ^ triangle[1]) | (triangle[0] ^ triangle[2])) >> shift_) == 0;
+    return {triangle, triangle[0] >> shift_, inside};
   }
 
   void count(std::size_t chunk) {
-    const auto [begin, end] = chunk_of(mesh_.triangles.size(), chunk);
+    const auto [begin, end] = chunk_of(triangles_.size(), chunk);
     for (std::size_t t = begin; t < end; ++t) {
       const Placed p = placed(t);
-      ++(p.inside ? inside_ : crossing_)[chunk * windows_ + p.window];
+      ++(p.inside ? inside_ : crossing_)[chunk * windows_ + static_cast<std::size_t>(p.window)];
     }
   }
 
@@ -143,25 +179,37 @@ class TriangleSort {
   }
 
   void place_triangles(std::size_t chunk) {
-    const auto [begin, end] = chunk_of(mesh_.triangles.size(), chunk);
+    const auto [begin, end] = chunk_of(triangles_.size(), chunk);
+    const std::int32_t within = partition_.window_size - 1;
     for (std::size_t t = begin; t < end; ++t) {
       const auto [triangle, window, inside] = placed(t);
+      const std::size_t at = chunk * windows_ + static_cast<std::size_t>(window);
       if (!inside) {
-        partition_.crossing[crossing_[chunk * windows_ + window]++] = triangle;
+        partition_.crossing[crossing_[at]++] = triangle;
         continue;
       }
-      LocalTriangle& local = partition_.triangles[inside_[chunk * windows_ + window]++];
-      const std::int32_t first = partition_.first_vertex(window);
-      for (int k = 0; k < 3; ++k) local[k] = static_cast<LocalVertex>(triangle[k] - first);
+      LocalTriangle& local = partition_.triangles[inside_[at]++];
+      for (int k = 0; k < 3; ++k) local[k] = static_cast<LocalVertex>(triangle[k] & within);
     }
   }
 
-  const WorkingMesh& mesh_;
-  const std::vector<std::int32_t>& place_;
+  std::span<const Triangle> triangles_;
+  const Buffer<std::int32_t>& place_;
   Partition& partition_;
+  const int shift_;
   const std::size_t windows_;
   std::vector<std::size_t> inside_, crossing_;  // (chunks, windows)
 };
+
+void keep_order(const WorkingMesh& mesh, Buffer<std::int32_t>& order, Buffer<std::int32_t>& place) {
+  std::int32_t at = 0;
+  for (const auto& [begin, end] : mesh.segments()) {
+    for (std::size_t v = begin; v < end; ++v) {
+      order[at] = static_cast<std::int32_t>(v);
+      place[v] = at++;
+    }
+  }
+}
 
 }  // namespace
 
@@ -170,20 +218,21 @@ std::int32_t Partition::vertices(std::int32_t window) const {
 }
 
 Partition make_partition(const WorkingMesh& mesh, std::int32_t window_size, std::uint32_t pass, int threads) {
-  const auto vertices = static_cast<std::int32_t>(mesh.vertices.size());
+  const auto vertices = static_cast<std::int32_t>(mesh.vertices());
   Partition partition;
   partition.window_size = window_size;
   partition.windows = vertices / window_size + (vertices % window_size != 0);
+  partition.order = Buffer<std::int32_t>(mesh.vertices());
+  Buffer<std::int32_t> place(mesh.slots());
   if (partition.windows > 1) {
-    partition.order = morton_order(mesh, pass, threads);
+    MortonSort(mesh, pass).run(threads, partition.order, place);
   } else {
-    partition.order.resize(mesh.vertices.size());
-    std::iota(partition.order.begin(), partition.order.end(), 0);
+    keep_order(mesh, partition.order, place);
   }
-  TriangleSort(mesh, inverse(partition.order), partition).run(threads);
-  partition.locked.assign(mesh.vertices.size(), 0);
-  for (const Triangle& triangle : partition.crossing) {
-    for (const std::int32_t v : triangle) partition.locked[v] = 1;
+  TriangleSort(mesh.triangles(), place, partition).run(threads);
+  partition.locked.assign(mesh.vertices(), 0);
+  for (std::size_t t = 0; t < partition.first_crossing.back(); ++t) {
+    for (const std::int32_t v : partition.crossing[t]) partition.locked[v] = 1;
   }
   return partition;
 }

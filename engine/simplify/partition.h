@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/simplify/buffer.h"
 #include "engine/simplify/rings.h"
 #include "engine/simplify/working_mesh.h"
 
@@ -16,24 +17,24 @@ namespace geosis {
 struct Partition {
   std::int32_t window_size = 0;
   std::int32_t windows = 0;
-  std::vector<std::int32_t> order;          ///< place in Morton order -> vertex of the mesh
+  Buffer<std::int32_t> order;               ///< place in Morton order -> vertex of the mesh
   std::vector<std::uint8_t> locked;         ///< by place: a triangle of this vertex leaves the window
-  std::vector<LocalTriangle> triangles;     ///< those inside a window, over places relative to the window's first
+  Buffer<LocalTriangle> triangles;          ///< those inside a window, over places relative to the window's first
   std::vector<std::size_t> first_triangle;  ///< (windows + 1)
-  std::vector<Triangle> crossing;           ///< the others, over places, at the window of their first vertex
+  Buffer<Triangle> crossing;                ///< the others, over places, at the window of their first vertex
   std::vector<std::size_t> first_crossing;  ///< (windows + 1)
 
   std::int32_t first_vertex(std::int32_t window) const { return window * window_size; }
   std::int32_t vertices(std::int32_t window) const;
   std::span<LocalTriangle> triangles_of(std::int32_t window) {
-    return std::span(triangles).subspan(first_triangle[window], first_triangle[window + 1] - first_triangle[window]);
+    return {&triangles[first_triangle[window]], first_triangle[window + 1] - first_triangle[window]};
   }
   std::span<Triangle> crossing_of(std::int32_t window) {
-    return std::span(crossing).subspan(first_crossing[window], first_crossing[window + 1] - first_crossing[window]);
+    return {&crossing[first_crossing[window]], first_crossing[window + 1] - first_crossing[window]};
   }
 };
 
-/// window_size   1 ... Window::kMaxVertices. A mesh that fits one window keeps its order.
+/// window_size   a power of two up to Window::kMaxVertices. A mesh that fits one window keeps its order.
 Partition make_partition(const WorkingMesh& mesh, std::int32_t window_size, std::uint32_t pass, int threads);
 
 }  // namespace geosis

@@ -4,11 +4,12 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
-#include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "engine/base/parallel.h"
+#include "engine/simplify/locked_stars.h"
 #include "engine/simplify/partition.h"
 #include "engine/simplify/window.h"
 
@@ -45,7 +46,7 @@ std::vector<std::int64_t> share_out(const Partition& partition, std::int64_t tri
     share[w] = std::count(first, first + partition.vertices(w), std::uint8_t{0});
     all_free += share[w];
   }
-  const auto remove = static_cast<double>(triangles - options.target);
+  const auto remove = static_cast<double>(triangles - options.goal.triangles);
   // A vertex takes two triangles along. A pass that others follow leaves what windows with few free vertices cannot
   // give in fairness to those.
   const double most = options.last ? 2.0 : 2.0 * remove / static_cast<double>(triangles);
@@ -57,10 +58,11 @@ std::vector<std::int64_t> share_out(const Partition& partition, std::int64_t tri
 /// What the windows left: window w's vertices from partition.first_vertex(w) on, its triangles over those in the
 /// partition's own place.
 struct WindowResults {
-  std::vector<WorkingVertex> vertices;
-  std::vector<std::int32_t> place;  // place in the partition -> index among the window's remaining vertices
+  Buffer<WorkingVertex> vertices;
+  Buffer<std::int32_t> place;  // place in the partition -> index among the window's remaining vertices
   std::vector<Window::Stored> stored;
   std::vector<float> max_cost;
+  std::vector<std::uint8_t> capped;
 };
 
 class Pass {
@@ -71,30 +73,45 @@ class Pass {
         watch_(watch),
         partition_(make_partition(mesh, options.window_size, options.number, options.threads)) {}
 
-  bool run() {
-    const auto share = share_out(partition_, static_cast<std::int64_t>(mesh_.triangles.size()), options_);
+  PassResult run() {
+    if (partition_.windows == 0) return {};
+    if (mesh_.m0()) locked_.emplace(mesh_, partition_, options_.threads);
+    if (locked_ && !locked_->is_manifold()) return {PassEnd::not_manifold};
+    const auto share = share_out(partition_, static_cast<std::int64_t>(mesh_.triangles().size()), options_);
     const auto windows = static_cast<std::size_t>(partition_.windows);
-    results_ = {std::vector<WorkingVertex>(mesh_.vertices.size()), std::vector<std::int32_t>(mesh_.vertices.size()),
-                std::vector<Window::Stored>(windows), std::vector<float>(windows)};
+    results_ = {Buffer<WorkingVertex>(mesh_.vertices()), Buffer<std::int32_t>(mesh_.vertices()),
+                std::vector<Window::Stored>(windows), std::vector<float>(windows), std::vector<std::uint8_t>(windows)};
     parallel_for(windows, options_.threads,
                  [&](std::size_t w) { reduce_window(static_cast<std::int32_t>(w), share[w]); });
-    if (cancelled_) return false;
+    if (end_ != PassEnd::done) return {end_};
     join();
-    return true;
+    return {PassEnd::done, *std::max_element(results_.max_cost.begin(), results_.max_cost.end()),
+            std::count(results_.capped.begin(), results_.capped.end(), 1) > 0};
   }
 
  private:
   void reduce_window(std::int32_t w, std::int64_t share) {
-    if (cancelled_) return;
+    if (end_ != PassEnd::done) return;
     auto window = pool_.take();
     const auto triangles = partition_.triangles_of(w);
-    window->load(gather(w, window->take_vertices()), triangles, mesh_.bounds);
-    if (!window->reduce(static_cast<std::int64_t>(triangles.size()) - share, watch_)) cancelled_ = true;
+    window->load(gather(w, window->take_vertices()), triangles, mesh_.bounds());
+    if (mesh_.m0() && !window->start(triangles)) {
+      end_ = PassEnd::not_manifold;
+      return;
+    }
+    Goal goal = options_.goal;
+    goal.triangles = static_cast<std::int64_t>(triangles.size()) - share;
+    Rules rules = options_.rules;
+    rules.seed += std::uint64_t{options_.number} << 32 | static_cast<std::uint32_t>(w);
+    if (!window->reduce(goal, rules, watch_)) {
+      end_ = PassEnd::cancelled;
+      return;
+    }
     const auto first = static_cast<std::size_t>(partition_.first_vertex(w));
     const auto count = static_cast<std::size_t>(partition_.vertices(w));
-    results_.stored[w] = window->store(std::span(results_.vertices).subspan(first, count), triangles,
-                                       std::span(results_.place).subspan(first, count));
+    results_.stored[w] = window->store({&results_.vertices[first], count}, triangles, {&results_.place[first], count});
     results_.max_cost[w] = window->max_cost();
+    results_.capped[w] = window->capped();
     pool_.give_back(std::move(window));
   }
 
@@ -102,37 +119,36 @@ class Pass {
     const std::int32_t first = partition_.first_vertex(w);
     vertices.resize(partition_.vertices(w));
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-      vertices[i] = mesh_.vertices[partition_.order[first + i]];
-      vertices[i].locked = partition_.locked[first + i];
+      const std::size_t place = first + i;
+      const bool locked = partition_.locked[place];
+      vertices[i] = locked && locked_ ? locked_->at(place) : mesh_.vertex(partition_.order[place]);
+      vertices[i].locked = locked;
     }
     return vertices;
   }
 
   /// The windows' remains, one window after the other, each followed by the triangles that leave it.
   void join() {
-    std::vector<std::int32_t> offset(partition_.windows + 1, 0);
+    std::vector<Segment> segments(partition_.windows);
     std::vector<std::size_t> first(partition_.windows + 1, 0);
     for (std::int32_t w = 0; w < partition_.windows; ++w) {
-      offset[w + 1] = offset[w] + static_cast<std::int32_t>(results_.stored[w].vertices);
+      const auto begin = static_cast<std::size_t>(partition_.first_vertex(w));
+      segments[w] = {begin, begin + results_.stored[w].vertices};
       first[w + 1] = first[w] + results_.stored[w].triangles + partition_.crossing_of(w).size();
-      mesh_.max_cost = std::max(mesh_.max_cost, results_.max_cost[w]);
     }
-    mesh_.vertices.resize(offset.back());
-    mesh_.triangles.resize(first.back());
+    Buffer<Triangle> triangles(first.back());
     parallel_for(static_cast<std::size_t>(partition_.windows), options_.threads,
-                 [&](std::size_t w) { join_window(static_cast<std::int32_t>(w), offset, first[w]); });
+                 [&](std::size_t w) { join_window(static_cast<std::int32_t>(w), triangles.data() + first[w]); });
+    mesh_ = WorkingMesh(std::move(results_.vertices), std::move(segments), std::move(triangles), mesh_.bounds());
   }
 
-  void join_window(std::int32_t w, const std::vector<std::int32_t>& offset, std::size_t first_triangle) {
-    const auto vertices = results_.vertices.begin() + partition_.first_vertex(w);
-    std::copy_n(vertices, results_.stored[w].vertices, mesh_.vertices.begin() + offset[w]);
-    Triangle* out = mesh_.triangles.data() + first_triangle;
+  void join_window(std::int32_t w, Triangle* out) {
+    const std::int32_t offset = partition_.first_vertex(w);
     for (const auto [a, b, c] : partition_.triangles_of(w).first(results_.stored[w].triangles)) {
-      *out++ = {offset[w] + a, offset[w] + b, offset[w] + c};
+      *out++ = {offset + a, offset + b, offset + c};
     }
-    const auto joined = [&](std::int32_t place) {
-      return offset[place / partition_.window_size] + results_.place[place];
-    };
+    const std::int32_t window_mask = ~(partition_.window_size - 1);
+    const auto joined = [&](std::int32_t place) { return (place & window_mask) + results_.place[place]; };
     for (const auto& [a, b, c] : partition_.crossing_of(w)) *out++ = {joined(a), joined(b), joined(c)};
   }
 
@@ -140,14 +156,15 @@ class Pass {
   const PassOptions& options_;
   Watch& watch_;
   Partition partition_;
+  std::optional<LockedStars> locked_;  // in the first pass
   WindowResults results_;
   WindowPool pool_;
-  std::atomic<bool> cancelled_ = false;
+  std::atomic<PassEnd> end_ = PassEnd::done;
 };
 
 }  // namespace
 
-bool run_pass(WorkingMesh& mesh, const PassOptions& options, Watch& watch) {
+PassResult run_pass(WorkingMesh& mesh, const PassOptions& options, Watch& watch) {
   return Pass(mesh, options, watch).run();
 }
 

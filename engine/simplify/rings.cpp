@@ -1,7 +1,6 @@
 #include "engine/simplify/rings.h"
 
 #include <algorithm>
-#include <cassert>
 #include <utility>
 
 namespace geosis {
@@ -24,28 +23,6 @@ void Rings::build(std::size_t vertices, std::span<const LocalTriangle> triangles
     add(a, {b, c});
     add(b, {c, a});
     add(c, {a, b});
-  }
-}
-
-void Rings::remove_triangle(LocalVertex w, LocalVertex u, LocalVertex v) {
-  Place& place = places_[w];
-  RingTriangle* ring = &triangles_[place.first];
-  const auto holds_both = [&](RingTriangle t) { return (t.a == u && t.b == v) || (t.a == v && t.b == u); };
-  RingTriangle* found = std::find_if(ring, ring + place.degree, holds_both);
-  assert(found != ring + place.degree);
-  *found = ring[--place.degree];
-}
-
-void Rings::rename(LocalVertex w, LocalVertex v, LocalVertex u) {
-  const Place place = places_[w];
-  RingTriangle* ring = &triangles_[place.first];
-  // Whole steps: what lies in the room behind the last triangle is never read.
-  for (std::uint32_t step = 0; step < place.degree; step += kStep) {
-    for (std::uint32_t i = 0; i < kStep; ++i) {
-      RingTriangle& t = ring[step + i];
-      t.a = t.a == v ? u : t.a;
-      t.b = t.b == v ? u : t.b;
-    }
   }
 }
 

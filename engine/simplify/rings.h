@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <vector>
 
@@ -13,7 +16,7 @@ using LocalTriangle = std::array<LocalVertex, 3>;
 
 /// In the one-ring of v: the triangle (v, a, b).
 struct RingTriangle {
-  LocalVertex a = 0, b = 0;
+  LocalVertex a, b;
 };
 
 /// The one-rings of a window's vertices: for each vertex its triangles, in no order.
@@ -24,11 +27,32 @@ class Rings {
   int degree(LocalVertex v) const { return places_[v].degree; }
   std::span<const RingTriangle> of(LocalVertex v) const { return {&triangles_[places_[v].first], places_[v].degree}; }
 
+  /// Has v's ring fetched into the cache.
+  void prefetch(LocalVertex v) const { __builtin_prefetch(&triangles_[places_[v].first]); }
+
   /// Removes the triangle on u and v from w's ring; it must be there.
-  void remove_triangle(LocalVertex w, LocalVertex u, LocalVertex v);
+  void remove_triangle(LocalVertex w, LocalVertex u, LocalVertex v) {
+    Place& place = places_[w];
+    RingTriangle* ring = &triangles_[place.first];
+    RingTriangle* found = ring;
+    while (!((found->a == u && found->b == v) || (found->a == v && found->b == u))) ++found;
+    assert(found < ring + place.degree);
+    *found = ring[--place.degree];
+  }
 
   /// Makes u out of every v in w's ring.
-  void rename(LocalVertex w, LocalVertex v, LocalVertex u);
+  void rename(LocalVertex w, LocalVertex v, LocalVertex u) {
+    const Place place = places_[w];
+    RingTriangle* ring = &triangles_[place.first];
+    // Whole steps of one register: what lies in the room behind the last triangle is never read.
+    using Step = LocalVertex __attribute__((vector_size(kStep * sizeof(RingTriangle))));
+    for (std::uint32_t i = 0; i < place.degree; i += kStep) {
+      Step step;
+      std::memcpy(&step, ring + i, sizeof(step));
+      step = step == v ? Step{} + u : step;
+      std::memcpy(ring + i, &step, sizeof(step));
+    }
+  }
 
   /// Gives u the ring `merged` (which must not lie in this object) and leaves v without one.
   void merge(LocalVertex u, LocalVertex v, std::span<const RingTriangle> merged);

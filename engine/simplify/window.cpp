@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <limits>
 #include <utility>
 
 #include "engine/simplify/edge_cost.h"
+#include "engine/simplify/first_star.h"
+#include "engine/simplify/fold_check.h"
 
 namespace geosis {
 namespace {
@@ -17,13 +20,16 @@ constexpr float kFreshShare = 0.5f;
 /// After a collapse only edges up to this multiple of the cheapest one around are worth queueing.
 constexpr float kQueueLimit = 2.0f;
 
+constexpr int kChoices = 8;          // edges to choose from: the paper's Table 1
+constexpr int kMostRefusals = 1000;  // in a row; what is left then will hardly collapse
+
 constexpr std::int64_t kTrianglesBetweenReports = 8192;
+
+using Costs = std::array<float, (kMaxDegree + kLanes) / kLanes * kLanes>;
 
 bool nearer(Vec3f place, Vec3f p, Vec3f q) {
   return dot(p - place, p - place) < dot(q - place, q - place);
 }
-
-using Costs = std::array<float, (kMaxDegree + kCostLanes) / kCostLanes * kCostLanes>;
 
 }  // namespace
 
@@ -33,17 +39,39 @@ void Window::load(std::vector<WorkingVertex> vertices, std::span<const LocalTria
   bounds_ = bounds;
   triangles_ = static_cast<std::int64_t>(triangles.size());
   max_cost_ = 0;
+  queued_ = false;
   rings_.build(vertices_.size(), triangles);
   version_.assign(vertices_.size(), 0);
   marks_.reset(vertices_.size());
-  queue_all_edges();
 }
 
-bool Window::reduce(std::int64_t target, Watch& watch) {
-  while (triangles_ > target) {
+bool Window::start(std::span<const LocalTriangle> triangles) {
+  for (const auto& [a, b, c] : triangles) add_triangle_plane(vertices_[a], vertices_[b], vertices_[c]);
+  const auto position = [&](LocalVertex v) { return vertices_[v].position; };
+  ClosedFans closed(vertices_.size());
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    const auto v = static_cast<LocalVertex>(i);
+    if (vertices_[v].locked || closed.is_closed_fan(v, rings_.of(v))) continue;
+    const Fan<RingTriangle> fan(v, rings_.of(v));
+    if (!fan.is_sound()) return false;
+    if (fan.is_open()) add_boundary_planes(vertices_[v], fan, position);
+  }
+  return true;
+}
+
+bool Window::reduce(const Goal& goal, const Rules& rules, Watch& watch) {
+  goal_ = goal;
+  rules_ = rules;
+  capped_ = false;
+  return rules.strategy == Strategy::greedy ? reduce_greedily(watch) : reduce_by_multiple_choice(watch);
+}
+
+bool Window::reduce_greedily(Watch& watch) {
+  if (!std::exchange(queued_, true)) queue_all_edges();
+  while (triangles_ > goal_.triangles) {
     const std::int64_t before = triangles_;
-    if (!collapse_cheapest_first(target, watch)) return false;
-    if (triangles_ <= target) break;
+    if (!collapse_cheapest_first(watch)) return false;
+    if (triangles_ <= goal_.triangles) break;
     // The queue ran empty. What was refused or not worth queueing gets another chance, as long as that leads anywhere.
     queue_all_edges();
     if (before - triangles_ <= before / 1000) break;
@@ -52,25 +80,21 @@ bool Window::reduce(std::int64_t target, Watch& watch) {
 }
 
 Neighbours Window::free_neighbours(LocalVertex u) const {
-  Neighbours result;
-  if (vertices_[u].locked || rings_.degree(u) > kMaxDegree) return result;
-  for (const LocalVertex v : neighbours_of(u, vertices_[u].on_boundary, rings_)) {
-    if (!vertices_[v].locked) result.ids[result.count++] = v;
-  }
-  return result;
+  if (vertices_[u].locked || rings_.degree(u) > kMaxDegree) return {};
+  return neighbours_of(u, vertices_[u].on_boundary, rings_, [&](LocalVertex v) { return !vertices_[v].locked; });
 }
 
 void Window::queue_all_edges() {
   queue_.clear();
+  queue_.reserve(3 * vertices_.size());
   Costs costs;
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     const auto u = static_cast<LocalVertex>(i);
-    Neighbours around = free_neighbours(u);
-    LocalVertex* end =
-        std::remove_if(around.ids.begin(), around.ids.begin() + around.count, [&](LocalVertex v) { return v < u; });
-    around.count = static_cast<int>(end - around.ids.begin());
+    if (vertices_[u].locked || rings_.degree(u) > kMaxDegree) continue;
+    const Neighbours around = neighbours_of(u, vertices_[u].on_boundary, rings_,
+                                            [&](LocalVertex v) { return v > u && !vertices_[v].locked; });
     if (around.count == 0) continue;
-    edge_costs(vertices_, u, around, costs);
+    edge_costs(vertices_, u, around, costs, rules_.placement);
     for (int k = 0; k < around.count; ++k) push(u, around.ids[k], costs[k]);
   }
 }
@@ -79,7 +103,7 @@ void Window::queue_edges_around(LocalVertex u) {
   const Neighbours around = free_neighbours(u);
   if (around.count == 0) return;
   Costs costs;
-  edge_costs(vertices_, u, around, costs);
+  edge_costs(vertices_, u, around, costs, rules_.placement);
   const float limit = kQueueLimit * *std::min_element(costs.begin(), costs.begin() + around.count);
   for (int k = 0; k < around.count; ++k) {
     if (costs[k] <= limit) push(u, around.ids[k], costs[k]);
@@ -90,10 +114,18 @@ void Window::push(LocalVertex u, LocalVertex v, float cost) {
   queue_.push({u, v, version_[u], version_[v]}, cost);
 }
 
-bool Window::collapse_cheapest_first(std::int64_t target, Watch& watch) {
+void Window::prefetch(const QueuedEdge& edge) const {
+  for (const LocalVertex v : {edge.u, edge.v}) {
+    __builtin_prefetch(&vertices_[v]);
+    rings_.prefetch(v);
+  }
+}
+
+bool Window::collapse_cheapest_first(Watch& watch) {
   std::int64_t reported = triangles_;
   QueuedEdge edge;
-  while (triangles_ > target && queue_.pop(edge)) {
+  while (triangles_ > goal_.triangles && queue_.pop(edge)) {
+    if (const QueuedEdge* next = queue_.likely_next()) prefetch(*next);
     if (version_[edge.u] != edge.version_u || version_[edge.v] != edge.version_v) continue;
     if (!try_collapse(edge.u, edge.v)) continue;
     queue_edges_around(edge.u);
@@ -104,6 +136,46 @@ bool Window::collapse_cheapest_first(std::int64_t target, Watch& watch) {
   return watch.removed(reported - triangles_);
 }
 
+/// The paper's rule: of 8 random edges the cheapest collapses, whatever the others of the window cost.
+bool Window::reduce_by_multiple_choice(Watch& watch) {
+  RandomEdges random(rules_.seed);
+  for (std::size_t v = 0; v < vertices_.size(); ++v) {
+    if (!vertices_[v].locked) random.add(static_cast<LocalVertex>(v));
+  }
+  std::int64_t reported = triangles_;
+  for (int refused = 0; triangles_ > goal_.triangles && refused < kMostRefusals;) {
+    const QueuedEdge edge = cheapest_of_random(random);
+    refused = edge.u != edge.v && try_collapse(edge.u, edge.v) ? 0 : refused + 1;
+    if (reported - triangles_ < kTrianglesBetweenReports) continue;
+    if (!watch.removed(reported - triangles_)) return false;
+    reported = triangles_;
+  }
+  return watch.removed(reported - triangles_);
+}
+
+/// u == v when none was found.
+QueuedEdge Window::cheapest_of_random(RandomEdges& random) {
+  QueuedEdge best{0, 0, 0, 0};
+  float least = std::numeric_limits<float>::infinity();
+  Costs costs;
+  for (int i = 0; i < kChoices; ++i) {
+    LocalVertex u, v;
+    if (!random.draw(rings_, u, v)) break;
+    if (vertices_[v].locked || rings_.degree(u) > kMaxDegree || rings_.degree(v) > kMaxDegree) continue;
+    edge_costs(vertices_, u, std::span(&v, 1), costs, rules_.placement);
+    if (!(costs[0] < least)) continue;
+    least = costs[0];
+    best = {u, v, 0, 0};
+  }
+  return best;
+}
+
+/// weight    of the planes whose squared distances the cost sums up: an area.
+bool Window::within_goal(float cost, float weight) {
+  capped_ = capped_ || cost > goal_.max_cost || cost > goal_.max_error * goal_.max_error * weight;
+  return !(cost > goal_.max_cost || cost > goal_.max_error * goal_.max_error * weight);
+}
+
 /// Merges v into u, if that keeps topology and shape.
 bool Window::try_collapse(LocalVertex u, LocalVertex v) {
   MergedStar star;
@@ -111,18 +183,23 @@ bool Window::try_collapse(LocalVertex u, LocalVertex v) {
   WorkingVertex& kept = vertices_[u];
   const WorkingVertex& gone = vertices_[v];
   const Vec3f edge = gone.position - kept.position;
-  const Quadric sum = kept.quadric + seen_from(gone.quadric, edge);
-  const Vec3f place = best_point(sum, edge, merge_target(kept, gone));
-  const Vec3f position = snap_to_lattice(kept.position + place, bounds_);
-  const MovedStar moved = move_star(star, u, v, position, vertices_);
-  if (!moved.sound) return false;
-
+  const Quadric sum = kept.quadric() + seen_from(gone.quadric(), edge);
+  Vec3f place = best_point(sum, edge, merge_target(kept, gone), rules_.placement);
   const bool on_boundary = kept.on_boundary || gone.on_boundary;
+  StarShape shape;
+  measure_star(star, u, v, vertices_, shape);
+  if (!on_boundary && rules_.placement == Placement::optimal) place = keep_volume(shape, edge, place);
+  const Vec3f position = snap_to_lattice(kept.position + place, bounds_);
+  const MovedStar moved = move_star(star, shape, position);
+  if (!moved.sound) return false;
   Quadric merged = seen_from(sum, kept.position - position);
   merged.c = std::max(merged.c, 0.0f);
+  if (!within_goal(merged.c, merged.trace())) return false;
+  if (goal_.refuse_folds && moved.sharp && folds_over(star, u, v, position, vertices_, rings_, marks_)) return false;
+
   max_cost_ = std::max(max_cost_, merged.c);
   // The planes that hold a boundary would fade away with the memory.
-  kept.quadric = on_boundary ? merged : blend(merged, moved.planes, kFreshShare);
+  kept.set_quadric(on_boundary ? merged : blend(merged, moved.planes, kFreshShare));
   if (nearer(position, gone.position, kept.position)) kept.origin = gone.origin;
   kept.position = position;
   kept.on_boundary = on_boundary;

@@ -6,16 +6,19 @@
 
 #include "engine/simplify/bucket_queue.h"
 #include "engine/simplify/collapse.h"
+#include "engine/simplify/random_edges.h"
 #include "engine/simplify/rings.h"
+#include "engine/simplify/rules.h"
 #include "engine/simplify/watch.h"
 #include "engine/simplify/working_mesh.h"
 
 namespace geosis {
 
-/// A piece of the mesh small enough for the cache, simplified by itself: cheapest edge first.
+/// A piece of the mesh small enough for the cache, simplified by itself.
 ///
 ///   load     vertices and triangles in, one-rings built
-///   reduce   collapse edges until so many triangles are left; may be called again with a lower target
+///   start    planes of M0's triangles, before anything has moved
+///   reduce   collapse edges until the goal is reached; may be called again with a farther goal
 ///   store    what is left, out
 ///
 /// Scratch of one thread: loading again reuses the memory.
@@ -27,11 +30,18 @@ class Window {
   /// bounds      no vertex leaves it.
   void load(std::vector<WorkingVertex> vertices, std::span<const LocalTriangle> triangles, const Box& bounds);
 
-  /// Collapses edges until `target` triangles are left or no edge can collapse. False if cancelled.
-  bool reduce(std::int64_t target, Watch& watch);
+  /// Gives the vertices that are not locked what they start with; false if the triangles around one are not a fan.
+  ///
+  /// triangles   those that were loaded.
+  bool start(std::span<const LocalTriangle> triangles);
 
+  /// Collapses edges until the goal is reached or no edge can collapse. False if cancelled.
+  bool reduce(const Goal& goal, const Rules& rules, Watch& watch);
+
+  std::size_t vertices() const { return vertices_.size(); }  ///< loaded
   std::int64_t triangles() const { return triangles_; }
   float max_cost() const { return max_cost_; }  ///< of the collapses since load
+  bool capped() const { return capped_; }       ///< whether the last goal's max_cost or max_error refused a collapse
 
   struct Stored {
     std::size_t vertices = 0, triangles = 0;
@@ -51,8 +61,13 @@ class Window {
   void queue_all_edges();
   void queue_edges_around(LocalVertex u);
   void push(LocalVertex u, LocalVertex v, float cost);
-  bool collapse_cheapest_first(std::int64_t target, Watch& watch);
+  bool reduce_greedily(Watch& watch);
+  bool collapse_cheapest_first(Watch& watch);
+  void prefetch(const QueuedEdge& edge) const;
+  bool reduce_by_multiple_choice(Watch& watch);
+  QueuedEdge cheapest_of_random(RandomEdges& random);
   bool try_collapse(LocalVertex u, LocalVertex v);
+  bool within_goal(float cost, float weight);
   void commit(LocalVertex u, LocalVertex v, const MergedStar& star);
   Neighbours free_neighbours(LocalVertex u) const;
 
@@ -62,8 +77,12 @@ class Window {
   BucketQueue queue_;
   VertexMarks marks_;
   Box bounds_;
+  Goal goal_;
+  Rules rules_;
+  bool queued_ = false;
   std::int64_t triangles_ = 0;
   float max_cost_ = 0;
+  bool capped_ = false;
 };
 
 }  // namespace geosis

@@ -4,6 +4,7 @@
 
 #include "engine/base/progress.h"
 #include "engine/base/result.h"
+#include "engine/mesh/lod_hierarchy.h"
 #include "engine/simplify/build_lods.h"
 
 namespace geosis {

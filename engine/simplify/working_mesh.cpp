@@ -1,7 +1,7 @@
 #include "engine/simplify/working_mesh.h"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 namespace geosis {
 namespace {
@@ -18,62 +18,69 @@ Box bounds_of(const std::vector<Vec3f>& positions) {
   return box;
 }
 
-/// The triangle's plane, weighted by its area, at its three vertices.
-void add_triangle_plane(WorkingVertex& a, WorkingVertex& b, WorkingVertex& c) {
-  const Vec3f normal = cross(b.position - a.position, c.position - a.position);
-  const float twice_area = norm(normal);
-  if (twice_area == 0) return;
-  for (WorkingVertex* v : {&a, &b, &c}) add_plane(v->quadric, normal, 0.5f / twice_area);
-}
-
-/// The plane through the edge a-b at a right angle to its triangle's, weighted by the edge's squared length.
-void add_boundary_plane(WorkingVertex& a, WorkingVertex& b, Vec3f apex) {
-  const Vec3f edge = b.position - a.position;
-  const Vec3f side = apex - a.position;
-  const float length2 = dot(edge, edge);
-  if (length2 == 0) return;
-  const Vec3f across = side - edge * (dot(side, edge) / length2);
-  const float across2 = dot(across, across);
-  if (across2 == 0) return;
-  for (WorkingVertex* v : {&a, &b}) add_plane(v->quadric, across, length2 / across2);
-}
-
 }  // namespace
 
-WorkingMesh make_working_mesh(const IndexedMesh& m0, const CornerTable& table) {
-  WorkingMesh mesh{std::vector<WorkingVertex>(m0.positions.size()), m0.triangles, bounds_of(m0.positions)};
-  for (std::size_t v = 0; v < m0.positions.size(); ++v) {
-    mesh.vertices[v].position = m0.positions[v];
-    mesh.vertices[v].origin = static_cast<std::int32_t>(v);
+WorkingMesh::WorkingMesh(const IndexedMesh& m0)
+    : m0_(&m0),
+      segments_{{0, m0.positions.size()}},
+      vertex_count_(m0.positions.size()),
+      bounds_(bounds_of(m0.positions)) {}
+
+WorkingMesh::WorkingMesh(Buffer<WorkingVertex> vertices, std::vector<Segment> segments, Buffer<Triangle> triangles,
+                         const Box& bounds)
+    : vertices_(std::move(vertices)),
+      segments_(std::move(segments)),
+      triangles_(std::move(triangles)),
+      bounds_(bounds) {
+  for (const auto& [begin, end] : segments_) vertex_count_ += end - begin;
+}
+
+WorkingMesh WorkingMesh::clone() const {
+  if (m0_) return WorkingMesh(*m0_);
+  return WorkingMesh(vertices_.clone(), segments_, triangles_.clone(), bounds_);
+}
+
+WorkingMesh without(const WorkingMesh& mesh, const std::function<bool(std::int32_t origin)>& goes) {
+  constexpr std::int32_t kGone = -1;
+  std::vector<std::int32_t> place(mesh.slots(), kGone);
+  Buffer<WorkingVertex> vertices(mesh.vertices());
+  std::size_t count = 0;
+  for (const auto& [begin, end] : mesh.segments()) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const WorkingVertex vertex = mesh.vertex(v);
+      if (goes(vertex.origin)) continue;
+      place[v] = static_cast<std::int32_t>(count);
+      vertices[count++] = vertex;
+    }
   }
-  for (const auto& [a, b, c] : mesh.triangles) {
-    add_triangle_plane(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+  const auto stays = [&](const Triangle& t) { return place[t[0]] != kGone; };
+  Buffer<Triangle> triangles(
+      static_cast<std::size_t>(std::count_if(mesh.triangles().begin(), mesh.triangles().end(), stays)));
+  Triangle* out = triangles.data();
+  for (const Triangle& t : mesh.triangles()) {
+    if (stays(t)) *out++ = {place[t[0]], place[t[1]], place[t[2]]};
   }
-  for (std::int32_t c = 0; c < table.corners(); ++c) {
-    if (table.opposite[c] != CornerTable::kNoCorner) continue;
-    WorkingVertex& a = mesh.vertices[table.vertex[CornerTable::next(c)]];
-    WorkingVertex& b = mesh.vertices[table.vertex[CornerTable::previous(c)]];
-    a.on_boundary = b.on_boundary = true;
-    add_boundary_plane(a, b, m0.positions[table.vertex[c]]);
-  }
-  return mesh;
+  return WorkingMesh(std::move(vertices), {{0, count}}, std::move(triangles), mesh.bounds());
 }
 
 LodLevel to_level(const WorkingMesh& mesh) {
   constexpr std::int32_t kUnused = -1;
-  std::vector<std::int32_t> place(mesh.vertices.size(), kUnused);
-  for (const Triangle& triangle : mesh.triangles) {
+  std::vector<std::int32_t> place(mesh.slots(), kUnused);
+  for (const Triangle& triangle : mesh.triangles()) {
     for (const std::int32_t v : triangle) place[v] = 0;
   }
   LodLevel level;
-  for (std::size_t v = 0; v < place.size(); ++v) {
-    if (place[v] == kUnused) continue;
-    place[v] = static_cast<std::int32_t>(level.origin.size());
-    level.mesh.positions.push_back(mesh.vertices[v].position);
-    level.origin.push_back(mesh.vertices[v].origin);
+  for (const auto& [begin, end] : mesh.segments()) {
+    for (std::size_t v = begin; v < end; ++v) {
+      if (place[v] == kUnused) continue;
+      place[v] = static_cast<std::int32_t>(level.origin.size());
+      const WorkingVertex vertex = mesh.vertex(v);
+      level.mesh.positions.push_back(vertex.position);
+      level.origin.push_back(vertex.origin);
+    }
   }
-  level.mesh.triangles.reserve(mesh.triangles.size());
-  for (const auto& [a, b, c] : mesh.triangles) level.mesh.triangles.push_back({place[a], place[b], place[c]});
+  level.mesh.triangles.reserve(mesh.triangles().size());
+  for (const auto& [a, b, c] : mesh.triangles()) level.mesh.triangles.push_back({place[a], place[b], place[c]});
   return level;
 }
 

@@ -103,7 +103,9 @@ Patch pyramid_base() {
 bool sound_at(Patch p, Vec3f position) {
   MergedStar star;
   EXPECT_TRUE(find_merged_star(0, 4, p.vertices, p.rings, p.marks, star));
-  return move_star(star, 0, 4, position, p.vertices).sound;
+  StarShape shape;
+  measure_star(star, 0, 4, p.vertices, shape);
+  return move_star(star, shape, position).sound;
 }
 
 TEST(MoveStar, AcceptsAPlaceInside) {
@@ -127,7 +129,10 @@ TEST(MoveStar, GivesThePlanesOfTheMovedTriangles) {
   Patch p = pyramid_base();
   MergedStar star;
   ASSERT_TRUE(find_merged_star(0, 4, p.vertices, p.rings, p.marks, star));
-  const MovedStar moved = move_star(star, 0, 4, {0, 0, 0}, p.vertices);
+  StarShape shape;
+  measure_star(star, 0, 4, p.vertices, shape);
+  const MovedStar moved = move_star(star, shape, {0, 0, 0});
+  EXPECT_FALSE(moved.sharp);
   EXPECT_FLOAT_EQ(moved.planes.a22, 4);  // the area of the square, all of it flat
   EXPECT_FLOAT_EQ(moved.planes.trace(), 4);
 }

@@ -9,15 +9,16 @@ namespace geosis {
 namespace {
 
 WorkingVertex vertex(Vec3f position, std::vector<Vec3f> normals) {
-  WorkingVertex v;
-  v.position = position;
-  for (const Vec3f n : normals) add_plane(v.quadric, n, 1);
+  WorkingVertex v = make_vertex(position, 0);
+  Quadric quadric;
+  for (const Vec3f n : normals) add_plane(quadric, n, 1.0f);
+  v.set_quadric(quadric);
   return v;
 }
 
 Vec3f best(const WorkingVertex& u, const WorkingVertex& v) {
   const Vec3f edge = v.position - u.position;
-  return u.position + best_point(u.quadric + seen_from(v.quadric, edge), edge, merge_target(u, v));
+  return u.position + best_point(u.quadric() + seen_from(v.quadric(), edge), edge, merge_target(u, v));
 }
 
 TEST(BestPoint, FindsTheCornerWhereThreePlanesMeet) {
@@ -47,6 +48,17 @@ TEST(BestPoint, LeavesABoundaryVertexInPlace) {
   EXPECT_EQ(best(v, u), v.position);
 }
 
+TEST(BestPoint, IsTheCheaperEndInASubset) {
+  const auto u = vertex({0, 0, 0}, {{1, 0, 0}});
+  const auto v = vertex({3, 0, 0}, {{0, 1, 0}, {0.5f, 0, 0}});
+  const Vec3f edge = v.position - u.position;
+  const Quadric sum = u.quadric() + seen_from(v.quadric(), edge);
+  EXPECT_EQ(best_point(sum, edge, MergeTarget::best, Placement::subset), (Vec3f{0, 0, 0}));
+  EXPECT_EQ(
+      best_point(seen_from(sum, Vec3f{0, 0, 0} - edge), Vec3f{0, 0, 0} - edge, MergeTarget::best, Placement::subset),
+      Vec3f({0, 0, 0}) - edge);
+}
+
 TEST(EdgeCosts, LanesGiveWhatOneEdgeGives) {
   std::vector<WorkingVertex> vertices;
   for (int i = 0; i < 12; ++i) {
@@ -59,7 +71,7 @@ TEST(EdgeCosts, LanesGiveWhatOneEdgeGives) {
   std::array<float, 16> together;
   edge_costs(vertices, 0, neighbours, together);
   for (std::size_t i = 0; i < neighbours.size(); ++i) {
-    std::array<float, kCostLanes> alone;
+    std::array<float, kLanes> alone;
     edge_costs(vertices, 0, std::span(neighbours).subspan(i, 1), alone);
     EXPECT_EQ(together[i], alone[0]) << i;
   }
@@ -69,7 +81,7 @@ TEST(EdgeCosts, FlatEdgesCostTheirLengthOnly) {
   const std::vector<WorkingVertex> vertices = {vertex({0, 0, 0}, {{0, 0, 1}}), vertex({1, 0, 0}, {{0, 0, 1}}),
                                                vertex({0, 3, 0}, {{0, 0, 1}}), vertex({0, 1, 1}, {{0, 0, 1}})};
   const LocalVertex neighbours[] = {1, 2, 3};
-  std::array<float, kCostLanes> costs;
+  std::array<float, kLanes> costs;
   edge_costs(vertices, 0, neighbours, costs);
   EXPECT_LT(costs[0], costs[1]);
   EXPECT_LT(costs[1], 0.01f);

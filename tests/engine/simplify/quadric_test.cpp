@@ -8,13 +8,13 @@ namespace {
 Quadric some_quadric() {
   Quadric q;
   add_plane(q, {1, 2, -1}, 0.5f);
-  add_plane(q, {0, 1, 3}, 2);
+  add_plane(q, {0, 1, 3}, 2.0f);
   return q;
 }
 
 TEST(Quadric, IsZeroOnThePlane) {
   Quadric q;
-  add_plane(q, {0, 0, 2}, 1);
+  add_plane(q, {0, 0, 2}, 1.0f);
   EXPECT_EQ(q.value({5, -3, 0}), 0);
   EXPECT_EQ(q.value({5, -3, 1.5f}), 9);
 }

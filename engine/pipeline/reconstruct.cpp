@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -73,13 +74,24 @@ Result<void> check_attribute_volume(const ReconstructInput& input, const Reconst
   return Error{ErrorCode::invalid_argument, "the attribute volume has another shape than the volume"};
 }
 
-/// Level 0 is always M0, the reference of every certificate, whether or not the request asks for ratio 1.
+/// Whether level 0 is M0 itself, the reference of every certificate.
+bool is_m0(const LevelTarget& level) {
+  return level.ratio == 1.0 && !level.drop.any();
+}
+
 Result<LodHierarchy> simplify(IndexedMesh m0, const Run& run) {
   const StageTimer timer(run.timings.simplify);
   BuildLodsOptions build;
-  build.levels = by_ratio(run.options.ratios);
-  if (build.levels.empty() || build.levels.front().ratio != 1) build.levels.insert(build.levels.begin(), {.ratio = 1});
+  build.levels = run.options.levels;
+  build.strategy = run.options.strategy;
+  build.placement = run.options.placement;
+  build.seed = run.options.seed;
   build.threads = run.options.threads;
+  std::optional<ReferenceSurface> reference;  // M0 is prepared once, for all the levels that are measured
+  build.measure = [&](const IndexedMesh& original, const IndexedMesh& level) {
+    if (!reference) reference.emplace(original, DistanceOptions{.threads = run.options.threads});
+    return reference->measure(level).max_voxels;
+  };
   return build_lods(std::move(m0), build, run.progress);
 }
 
@@ -134,10 +146,12 @@ Result<std::vector<IndexedMesh>> encode_levels(std::vector<ReconstructedLevel>& 
   return decoded;
 }
 
-/// The hierarchy's levels that were asked for: all of them, or all but M0.
-std::vector<ReconstructedLevel> take_levels(std::vector<LodLevel>&& lods, std::size_t first) {
-  std::vector<ReconstructedLevel> levels(lods.size() - first);
-  for (std::size_t k = 0; k < levels.size(); ++k) levels[k].lod = std::move(lods[first + k]);
+std::vector<ReconstructedLevel> take_levels(std::vector<LodLevel>&& lods, const std::vector<LevelTarget>& asked) {
+  std::vector<ReconstructedLevel> levels(lods.size());
+  for (std::size_t k = 0; k < levels.size(); ++k) {
+    levels[k].asked = asked[k];
+    levels[k].lod = std::move(lods[k]);
+  }
   return levels;
 }
 
@@ -149,14 +163,11 @@ Result<Reconstruction> make_levels(LabelledSurface m0, const FilledVolume* fille
       .body = run.options.attributes.body ? std::span(body) : std::span<const std::uint32_t>(),
       .value = run.options.attributes.value ? run.input.attribute_volume : nullptr,
       .threads = run.options.threads};
+  const bool m0_is_asked = is_m0(run.options.levels.front());
+  const IndexedMesh m0_apart = m0_is_asked ? IndexedMesh{} : m0.mesh;
   auto lods = simplify(std::move(m0.mesh), run);
   if (!lods) return std::move(lods).error();
-  const std::size_t asked = run.options.ratios.size();
-  const bool m0_is_asked = lods->levels.size() == asked;
-  IndexedMesh m0_apart;
-  if (!m0_is_asked) m0_apart = std::move(lods->levels.front().mesh);
-
-  Reconstruction result{take_levels(std::move(lods->levels), m0_is_asked ? 0 : 1)};
+  Reconstruction result{take_levels(std::move(lods->levels), run.options.levels)};
   auto decoded = encode_levels(result.levels, sources, run);
   if (!decoded) return std::move(decoded).error();
   const IndexedMesh& reference = m0_is_asked ? result.levels.front().lod.mesh : m0_apart;
@@ -182,6 +193,7 @@ Result<Reconstruction> run_stages(const Run& run) {
 
 Result<Reconstruction> reconstruct(const ReconstructInput& input, const ReconstructOptions& options, Progress& progress,
                                    StageTimings* timings, const LevelSink& on_level) {
+  if (options.levels.empty()) return Error{ErrorCode::invalid_argument, "no levels asked for"};
   const auto space = output_space(input.geometry, options);
   if (!space) return space.error();
   auto encode = choose_encoding(input.samples.shape(), *space, options);

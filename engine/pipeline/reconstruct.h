@@ -53,7 +53,10 @@ struct ReconstructOptions {
   FillOptions fill = {};                         ///< of missing samples, before anything else
   std::optional<GridBox> region = std::nullopt;  ///< unset = the whole volume
   BodyChoice bodies = BodyChoice();
-  std::vector<double> ratios = {1, 0.25, 0.0625, 0.015625, 0.00390625};
+  std::vector<LevelTarget> levels = by_ratio({1, 0.25, 0.0625, 0.015625, 0.00390625});
+  Strategy strategy = Strategy::greedy;
+  Placement placement = Placement::optimal;
+  std::uint64_t seed = 0;                         ///< of multiple_choice
   bool index_space = false;                       ///< `space`: "index" instead of "world"
   std::optional<double> velocity = std::nullopt;  ///< m/s: turns two-way time in ms into depth in m
   AttributeChoice attributes = {};
@@ -70,6 +73,7 @@ struct SpaceDistance {
 
 /// One level with all that its manifest entry says.
 struct ReconstructedLevel {
+  LevelTarget asked;
   LodLevel lod;
   VertexAttributes attributes;  ///< those asked for, of lod.mesh's vertices
   EncodedLevel encoded;

@@ -4,6 +4,7 @@
 #include "engine/pipeline/output_space.h"
 #include "server/documents/ids.h"
 #include "server/documents/request.h"
+#include "server/documents/request_levels.h"
 
 namespace geosis::server {
 namespace {
@@ -84,7 +85,7 @@ Json level_document(const ReconstructedLevel& level, std::size_t number, const V
   const auto& topology = level.topology;
   const auto url = urls.level(number, level.encoded.parts.size());
   return {{"level", number},
-          {"asked", {{"ratio", level.lod.asked_ratio}}},
+          {"asked", asked_document(level.asked)},
           {"stopped_by", stopped_by_document(level.lod.stopped_by)},
           {"url", url ? Json(*url) : Json(nullptr)},
           {"parts", parts_document(level.encoded, number, urls)},
@@ -102,7 +103,7 @@ Json level_document(const ReconstructedLevel& level, std::size_t number, const V
           {"cost", number_or_null(level.lod.cost)},
           {"volume_drift", number_or_null(level.volume_drift)},
           {"interpolated_share", number_or_null(level.interpolated_share)},
-          {"dropped_components", 0},
+          {"dropped_components", level.lod.dropped_components},
           {"preview", false}};
 }
 

@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "server/documents/object_reader.h"
+#include "server/documents/request_levels.h"
 #include "server/documents/request_sections.h"
 
 namespace geosis::server {
 namespace {
 
-constexpr std::int64_t kMostLevels = 16;
 constexpr std::int64_t kLastNode = std::numeric_limits<std::int32_t>::max() - 1;
 constexpr double kFastest = 20'000;  // m/s, beyond any rock
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -28,16 +28,7 @@ struct FixedField {
 const std::vector<FixedField>& fixed_fields() {
   static const std::vector<FixedField> fields = {
       {"grid", "given"},
-      {"simplify", {{"strategy", "greedy"}, {"placement", "optimal"}, {"seed", 0}}},
       {"preview", false},
-  };
-  return fields;
-}
-
-const std::vector<FixedField>& fixed_level_fields() {
-  static const std::vector<FixedField> fields = {
-      {"error_cap", nullptr},
-      {"drop", {{"max_voxels", 0}, {"max_error", 0}}},
   };
   return fields;
 }
@@ -98,17 +89,6 @@ std::optional<GridBox> read_region(ObjectReader& request, std::optional<Error>& 
   return box;
 }
 
-double read_ratio(ObjectReader& level, double previous) {
-  const Json* ratio = level.find("ratio");
-  const double number = ratio && ratio->is_number() ? ratio->get<double>() : 0;
-  if (!(number > 0 && number <= 1)) {
-    level.refuse(level.pointer_to("ratio"), ratio ? *ratio : Json(nullptr), "a number in (0, 1]");
-  } else if (number >= previous) {
-    level.refuse(level.pointer_to("ratio"), *ratio, "less than the level before it has");
-  }
-  return number;
-}
-
 /// Two-way travel times become depths with it.
 std::optional<double> read_velocity(ObjectReader& request) {
   const Json* value = request.find("velocity");
@@ -117,32 +97,6 @@ std::optional<double> read_velocity(ObjectReader& request) {
   if (velocity > 0 && velocity <= kFastest) return velocity;
   request.refuse(request.pointer_to("velocity"), *value, "metres a second, above 0 and at most 20000, or null");
   return std::nullopt;
-}
-
-/// Levels by another measure than the ratio are in the contract, but not in this version.
-void refuse_other_measures(ObjectReader& level) {
-  for (const char* measure : {"max_error", "max_cost"}) level.only(measure, nullptr);
-}
-
-std::vector<double> read_levels(ObjectReader& request, std::vector<double> otherwise, std::optional<Error>& problem) {
-  const Json* value = request.find("levels");
-  if (!value) return otherwise;
-  const std::string pointer = request.pointer_to("levels");
-  if (!value->is_array() || value->empty() || value->size() > kMostLevels) {
-    request.refuse(pointer, *value, "an array of 1 to " + std::to_string(kMostLevels) + " levels");
-    return otherwise;
-  }
-  std::vector<double> ratios;
-  double previous = std::numeric_limits<double>::infinity();
-  for (const Json& entry : *value) {
-    ObjectReader level(entry, pointer + "/" + std::to_string(ratios.size()), problem);
-    refuse_other_measures(level);
-    for (const auto& field : fixed_level_fields()) read_fixed(level, field, problem);
-    previous = read_ratio(level, previous);
-    ratios.push_back(previous);
-    level.refuse_unknown();
-  }
-  return ratios;
 }
 
 void read_codec(ObjectReader& request, ReconstructOptions& options, std::optional<Error>& problem) {
@@ -167,16 +121,6 @@ Json region_document(const GridBox& box) {
   return region;
 }
 
-Json levels_document(const std::vector<double>& ratios) {
-  Json levels = Json::array();
-  for (const double ratio : ratios) {
-    Json level = {{"ratio", ratio}};
-    for (const auto& field : fixed_level_fields()) level[field.name] = field.supported;
-    levels.push_back(std::move(level));
-  }
-  return levels;
-}
-
 template <class T>
 Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
@@ -195,7 +139,8 @@ Result<ReconstructOptions> parse_request(const Json& document) {
   options.fill = read_missing(request, problem);
   options.region = read_region(request, problem);
   options.bodies = read_bodies(request, problem);
-  options.ratios = read_levels(request, options.ratios, problem);
+  options.levels = read_levels(request, options.levels, problem);
+  read_simplify(request, options, problem);
   options.velocity = read_velocity(request);
   read_attributes(request, options);
   read_codec(request, options, problem);
@@ -215,7 +160,8 @@ Json request_document(const ReconstructOptions& options, GridShape shape) {
       {"cap", options.cap},
       {"region", region_document(options.region.value_or(whole(shape)))},
       {"bodies", bodies_document(options.bodies)},
-      {"levels", levels_document(options.ratios)},
+      {"levels", levels_document(options.levels)},
+      {"simplify", simplify_document(options)},
       {"attributes", attributes_document(options.attributes)},
       {"attribute_volume", or_null(options.attribute_volume)},
       {"codec",

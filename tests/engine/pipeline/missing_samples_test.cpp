@@ -76,8 +76,8 @@ TEST(ReconstructMissing, FillingClosesTheHoleAndSaysWhereItDid) {
 
 TEST(ReconstructMissing, ReliabilityIsFullExactlyBetweenMeasuredSamples) {
   const auto volume = volume_of(kOne, 3);
-  const Reconstruction filled =
-      reconstruct_ball(*volume, {.range = {0, kInfinity}, .fill = {.method = FillMethod::linear}, .ratios = {1}});
+  const Reconstruction filled = reconstruct_ball(
+      *volume, {.range = {0, kInfinity}, .fill = {.method = FillMethod::linear}, .levels = by_ratio({1})});
   const ReconstructedLevel& finest = filled.levels[0];
   for (std::size_t v = 0; v < finest.lod.mesh.positions.size(); ++v) {
     const Vec3f p = finest.lod.mesh.positions[v];
@@ -126,7 +126,8 @@ TEST(ReconstructBodies, HaveOneNumberOnEveryLevel) {
 TEST(ReconstructBodies, AreKeptAsTheChoiceSays) {
   const auto volume = volume_of(kThree, 0);
   const auto components = [&](const BodyChoice& choice) {
-    const Reconstruction result = reconstruct_ball(*volume, {.range = {0, kInfinity}, .bodies = choice, .ratios = {1}});
+    const Reconstruction result =
+        reconstruct_ball(*volume, {.range = {0, kInfinity}, .bodies = choice, .levels = by_ratio({1})});
     return result.levels.empty() ? 0 : result.levels[0].topology.components;
   };
   EXPECT_EQ(components({}), 3);

@@ -31,7 +31,7 @@ std::unique_ptr<BrickedVolume> ball() {
   return make_bricked_volume(kShape, samples);
 }
 
-const ReconstructOptions kBall = {.range = {0, kInfinity}, .ratios = {1, 0.25, 0.0625}};
+const ReconstructOptions kBall = {.range = {0, kInfinity}, .levels = by_ratio({1, 0.25, 0.0625})};
 
 Reconstruction reconstruct_ball(const ReconstructOptions& options, const GridGeometry& geometry = AffineGeometry()) {
   NoProgress progress;
@@ -86,7 +86,7 @@ TEST(Reconstruct, DistanceAndDriftGrowFromZeroAtLevel0) {
 TEST(Reconstruct, DistanceIsToM0EvenWhenNobodyAsksForIt) {
   ReconstructOptions options = kBall;
   const Reconstruction all = reconstruct_ball(options);
-  options.ratios = {0.25, 0.0625};
+  options.levels = by_ratio({0.25, 0.0625});
   const Reconstruction coarse = reconstruct_ball(options);
   ASSERT_EQ(coarse.levels.size(), 2u);
   for (std::size_t k = 0; k < 2; ++k) {
@@ -176,7 +176,7 @@ TEST(Reconstruct, PassesOnWhatTheStagesRefuse) {
   options.range = {2, 1};
   EXPECT_EQ(error_of(options).code, ErrorCode::invalid_argument);
   options = kBall;
-  options.ratios = {1, 2};
+  options.levels = by_ratio({1, 2});
   EXPECT_EQ(error_of(options).code, ErrorCode::invalid_argument);
   options = kBall;
   options.speed = 11;

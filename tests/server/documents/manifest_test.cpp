@@ -80,7 +80,7 @@ TEST(ManifestDocument, ListsPartsWithTheirDigests) {
 
 TEST(ManifestDocument, CarriesTheCertificate) {
   auto level = level_of({{std::byte{1}}});
-  level.lod.asked_ratio = 0.25;
+  level.asked.ratio = 0.25;
   level.lod.stopped_by = StoppedBy::floor;
   const Json entry = manifest_of(depth_survey(), {}, {level})["levels"][0];
   EXPECT_EQ(entry["asked"], Json({{"ratio", 0.25}}));

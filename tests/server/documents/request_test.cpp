@@ -34,7 +34,9 @@ TEST(ParseRequest, FillsInTheDefaults) {
   EXPECT_TRUE(options.cap);
   EXPECT_FALSE(options.region);
   EXPECT_FALSE(options.index_space);
-  EXPECT_EQ(options.ratios, (std::vector<double>{1, 0.25, 0.0625, 0.015625, 0.00390625}));
+  ASSERT_EQ(options.levels.size(), 5u);
+  EXPECT_EQ(options.levels[0].ratio, 1);
+  EXPECT_EQ(options.levels[4].ratio, 0.00390625);
 }
 
 TEST(ParseRequest, ReadsEveryFieldThatItSupports) {
@@ -48,7 +50,8 @@ TEST(ParseRequest, ReadsEveryFieldThatItSupports) {
   EXPECT_FALSE(options.cap);
   EXPECT_TRUE(options.index_space);
   EXPECT_EQ(options.region, (GridBox{{0, 10, 5}, {75, 180, 267}}));
-  EXPECT_EQ(options.ratios, (std::vector<double>{1, 0.1}));
+  ASSERT_EQ(options.levels.size(), 2u);
+  EXPECT_EQ(options.levels[1].ratio, 0.1);
   EXPECT_EQ(options.position_bits, 15);
   EXPECT_EQ(options.speed, 4);
 }
@@ -126,8 +129,6 @@ TEST(ParseRequest, NamesWhatThisVersionDoesNotSupport) {
                  "request /grid: \"structural\"; this version supports only \"given\"");
   expect_refused(R"({"range": [0, 1], "codec": {"normals": true}})", unsupported,
                  "request /codec/normals: true; this version supports only false");
-  expect_refused(R"({"range": [0, 1], "levels": [{"max_error": 2}]})", unsupported,
-                 "request /levels/0/max_error: 2; this version supports only null");
 }
 
 TEST(ParseRequest, ShortensLongValuesInMessages) {

@@ -15,6 +15,8 @@
 namespace geosis {
 namespace {
 
+constexpr int kFastest = 10;  // Draco speed
+
 constexpr const char* kNameEntry = "name";
 constexpr const char* kSeamName = "seam";
 constexpr const char* kTransformEntry = "transform";
@@ -97,6 +99,10 @@ Result<std::vector<std::byte>> encode_with_draco(const IndexedMesh& level, const
   draco::ExpertEncoder encoder(mesh);
   encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
   encoder.SetSpeedOptions(options.speed, options.speed);
+  if (options.speed < kFastest) {
+    // Draco's own choice from speed 5 on is two bits a triangle whatever the mesh; valence coding takes about one.
+    encoder.options().SetGlobalInt("edgebreaker_method", draco::MESH_EDGEBREAKER_VALENCE_ENCODING);
+  }
   // Every attribute belongs to the vertex: one connectivity for all of them at every speed.
   encoder.options().SetGlobalBool("split_mesh_on_seams", true);
   quantise_on_lattice(encoder, position, options.position_bits);

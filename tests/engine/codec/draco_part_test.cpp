@@ -35,8 +35,8 @@ TEST(EncodePart, TransformTravelsAsDoublesInTheMetadata) {
 }
 
 /// Positions that are all the same take no bytes worth speaking of, so that connectivity is what remains. Standard
-/// edgebreaker (speed 10) writes 1 bit for half of the triangles and 3 for the others, whatever the mesh; valence coding
-/// gets below it.
+/// edgebreaker (speed 10) writes 1 bit for half of the triangles and 3 for the others, whatever the mesh; valence
+/// coding gets below it.
 TEST(EncodeMesh, ConnectivityTakesLessThanTwoBitsATriangle) {
   IndexedMesh mesh = test::torus({32, 32, 32}, 15, 6, 200, 150);
   std::fill(mesh.positions.begin(), mesh.positions.end(), Vec3f{});

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/missing/reliability_at.h"
+#include "engine/pipeline/level_normals.h"
 #include "engine/volume/sample_at.h"
 
 namespace geosis {
@@ -28,6 +29,11 @@ Result<VertexAttributes> attributes_of(const LodLevel& level, const AttributeSou
     auto reliability = reliability_at(*sources.filled, level.mesh.positions, sources.threads, progress);
     if (!reliability) return std::move(reliability).error();
     attributes.reliability = *std::move(reliability);
+  }
+  if (sources.normals != nullptr) {
+    auto normals = normals_of(level.mesh, *sources.normals, sources.mirrored, sources.threads, progress);
+    if (!normals) return std::move(normals).error();
+    attributes.normal = *std::move(normals);
   }
   if (sources.value != nullptr) {
     auto values = sample_at(*sources.value, level.mesh.positions, sources.threads, progress);

@@ -14,9 +14,11 @@ namespace geosis {
 
 /// Where the vertices of every level take their values from. What is null or empty gives no values.
 struct AttributeSources {
-  const FilledVolume* filled = nullptr;  ///< reliability
-  std::span<const std::uint32_t> body;   ///< of each vertex of M0
-  const BrickedVolume* value = nullptr;  ///< any volume of the shape of the one that M0 was extracted from
+  const FilledVolume* filled = nullptr;    ///< reliability
+  std::span<const std::uint32_t> body;     ///< of each vertex of M0
+  const BrickedVolume* normals = nullptr;  ///< normals: the samples that M0 was extracted from
+  bool mirrored = false;                   ///< as the triangles are ordered
+  const BrickedVolume* value = nullptr;    ///< any volume of the shape of the one that M0 was extracted from
   int threads = 1;
 };
 

@@ -156,11 +156,13 @@ std::vector<ReconstructedLevel> take_levels(std::vector<LodLevel>&& lods, const 
 }
 
 /// Everything after M0.
-Result<Reconstruction> make_levels(LabelledSurface m0, const FilledVolume* filled, const Run& run) {
+Result<Reconstruction> make_levels(LabelledSurface m0, const StageSamples& samples, const Run& run) {
   const std::vector<std::uint32_t> body = std::move(m0.body);
   const AttributeSources sources{
-      .filled = filled,
+      .filled = samples.filled,
       .body = run.options.attributes.body ? std::span(body) : std::span<const std::uint32_t>(),
+      .normals = run.options.normals ? samples.samples : nullptr,
+      .mirrored = run.space.mirrored(),
       .value = run.options.attributes.value ? run.input.attribute_volume : nullptr,
       .threads = run.options.threads};
   const bool m0_is_asked = is_m0(run.options.levels.front());
@@ -186,7 +188,7 @@ Result<Reconstruction> run_stages(const Run& run) {
   if (!m0) return std::move(m0).error();
   if (m0->mesh.triangles.empty()) return Reconstruction{};
   if (run.progress.cancelled()) return kCancelled;
-  return make_levels(*std::move(m0), samples->filled, run);
+  return make_levels(*std::move(m0), *samples, run);
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ void read_codec(ObjectReader& request, ReconstructOptions& options, std::optiona
   ObjectReader codec(*value, request.pointer_to("codec"), problem);
   const auto bits = codec.whole_number("position_bits", 7, kMaxPositionBits);
   const auto speed = codec.whole_number("speed", 0, 10);
-  codec.only("normals", false);
+  options.normals = codec.boolean("normals", options.normals);
   codec.refuse_unknown();
   if (bits) options.position_bits = static_cast<int>(*bits);
   if (speed) options.speed = static_cast<int>(*speed);
@@ -165,7 +165,9 @@ Json request_document(const ReconstructOptions& options, GridShape shape) {
       {"attributes", attributes_document(options.attributes)},
       {"attribute_volume", or_null(options.attribute_volume)},
       {"codec",
-       {{"position_bits", or_null(options.position_bits)}, {"normals", false}, {"speed", or_null(options.speed)}}}};
+       {{"position_bits", or_null(options.position_bits)},
+        {"normals", options.normals},
+        {"speed", or_null(options.speed)}}}};
   for (const auto& field : fixed_fields()) request[field.name] = field.supported;
   return request;
 }

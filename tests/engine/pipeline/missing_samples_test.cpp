@@ -180,5 +180,40 @@ TEST(ReconstructValues, AreThoseOfTheOtherVolumeAtEveryVertex) {
   EXPECT_EQ(reconstruct({*volume, geometry}, options, progress).error().code, ErrorCode::invalid_argument);
 }
 
+TEST(ReconstructNormals, PointOutOfABallAtEveryLevel) {
+  const auto volume = volume_of(kOne, 0);
+  for (const double side : {1.0, -1.0}) {  // -1: the world is mirrored
+    const AffineGeometry geometry({0, 0, 0}, {side, 0, 0}, {0, 1, 0}, {0, 0, 1});
+    NoProgress progress;
+    const auto result = reconstruct({*volume, geometry}, {.range = {0, kInfinity}, .normals = true}, progress);
+    ASSERT_TRUE(result) << result.error().message;
+    for (const ReconstructedLevel& level : result->levels) {
+      ASSERT_EQ(level.attributes.normal.size(), level.lod.mesh.positions.size());
+      for (std::size_t v = 0; v < level.attributes.normal.size(); ++v) {
+        const Vec3d n = to_double(level.attributes.normal[v]);
+        const Vec3d out = to_double(level.lod.mesh.positions[v]) - kOne[0].centre;
+        EXPECT_NEAR(norm(n), 1, 1e-6);
+        EXPECT_GT(dot(n, out) / norm(out), 0.95);
+      }
+    }
+  }
+}
+
+TEST(ReconstructNormals, FollowTheCapWhereTheBodyIsCut) {
+  const auto volume = volume_of(kOne, 0);
+  NoProgress progress;
+  const ReconstructOptions options{
+      .range = {0, kInfinity}, .region = GridBox{{0, 0, 0}, {19, 35, 31}}, .levels = by_ratio({1}), .normals = true};
+  const auto result = reconstruct({*volume, AffineGeometry()}, options, progress);
+  ASSERT_TRUE(result) << result.error().message;
+  const ReconstructedLevel& finest = result->levels[0];
+  for (std::size_t v = 0; v < finest.lod.mesh.positions.size(); ++v) {
+    const Vec3f p = finest.lod.mesh.positions[v];
+    const double from_axis = std::hypot(p.y - 17.6, p.z - 15.2);
+    if (p.x < 19 || from_axis < 2 || from_axis > 9) continue;  // the field has a tip in the middle of the ball
+    EXPECT_GT(finest.attributes.normal[v].x, 0.99);
+  }
+}
+
 }  // namespace
 }  // namespace geosis

@@ -127,8 +127,6 @@ TEST(ParseRequest, NamesWhatThisVersionDoesNotSupport) {
   const auto unsupported = ErrorCode::unsupported;
   expect_refused(R"({"range": [0, 1], "grid": "structural"})", unsupported,
                  "request /grid: \"structural\"; this version supports only \"given\"");
-  expect_refused(R"({"range": [0, 1], "codec": {"normals": true}})", unsupported,
-                 "request /codec/normals: true; this version supports only false");
 }
 
 TEST(ParseRequest, ShortensLongValuesInMessages) {

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/disjoint_sets.h"
 #include "engine/isosurface/brick_field.h"
 #include "engine/isosurface/brick_mesh.h"
-#include "engine/isosurface/disjoint_sets.h"
 #include "engine/isosurface/node_runs.h"
 
 namespace geosis {

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/base/disjoint_sets.h"
 #include "engine/isosurface/brick_field.h"
 #include "engine/isosurface/cell.h"
-#include "engine/isosurface/disjoint_sets.h"
 
 namespace geosis {
 

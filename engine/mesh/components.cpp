@@ -1,32 +1,9 @@
 #include "engine/mesh/components.h"
 
-#include <utility>
+#include "engine/base/disjoint_sets.h"
 
 namespace geosis {
 namespace {
-
-/// Disjoint sets over vertices. The root of a set is its lowest vertex, so labels do not depend on the order of unions.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t size) : parent_(size) {
-    for (std::size_t i = 0; i < size; ++i) parent_[i] = static_cast<std::int32_t>(i);
-  }
-
-  std::int32_t root(std::int32_t v) {
-    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-    return v;
-  }
-
-  void unite(std::int32_t a, std::int32_t b) {
-    a = root(a);
-    b = root(b);
-    if (a > b) std::swap(a, b);
-    parent_[b] = a;
-  }
-
- private:
-  std::vector<std::int32_t> parent_;
-};
 
 /// Each boundary loop once, at one of its vertices.
 void count_boundary_loops(const Components& components, const CornerTable& table,
@@ -43,7 +20,8 @@ void count_boundary_loops(const Components& components, const CornerTable& table
 
 Components find_components(const IndexedMesh& mesh) {
   const std::size_t vertices = mesh.positions.size();
-  DisjointSets sets(vertices);
+  DisjointSets sets;
+  sets.reset(static_cast<std::int32_t>(vertices));
   Components result{0, std::vector<std::int32_t>(vertices, Components::kUnused)};
   constexpr std::int32_t kUsed = 0;  // stands until the vertex gets its label
   for (const auto& [a, b, c] : mesh.triangles) {

@@ -3,34 +3,12 @@
 #include <algorithm>
 #include <cstring>
 
+#include "engine/base/disjoint_sets.h"
+
 namespace geosis {
 namespace {
 
 constexpr std::size_t kNodesBetweenAsking = 1 << 15;
-
-/// Union-find whose root is the smallest member, so that the result does not depend on the order of joining.
-class Groups {
- public:
-  explicit Groups(std::size_t count) : parent_(count) {
-    for (std::size_t n = 0; n < count; ++n) parent_[n] = static_cast<std::uint32_t>(n);
-  }
-  std::uint32_t root(std::uint32_t n) {
-    while (parent_[n] != n) {
-      parent_[n] = parent_[parent_[n]];
-      n = parent_[n];
-    }
-    return n;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    if (a < b) parent_[b] = a;
-    if (b < a) parent_[a] = b;
-  }
-
- private:
-  std::vector<std::uint32_t> parent_;
-};
 
 /// Whether a node lies between two wanted ones on an axis: numbers 1, 2 | 3, 4 | 5, 6 of the reach.
 bool is_enclosed(std::uint32_t wanted) {
@@ -91,15 +69,17 @@ class GapFinder {
     return number;
   }
 
-  Groups join() const {
+  DisjointSets join() const {
     const auto number = numbers();
     const auto& strides = neighbours_.strides();
-    Groups groups(joined_.nodes.size());
+    DisjointSets groups;
+    groups.reset(static_cast<std::int32_t>(joined_.nodes.size()));
     for (std::size_t n = 0; n < joined_.nodes.size(); ++n) {
       if (n % kNodesBetweenAsking == 0 && progress_.cancelled()) return groups;
       for (int m = 1; m < kPlateReach; ++m)
         if (strides[m] < 0 && ((joined_.wanted[n] >> m) & 1) != 0)
-          groups.join(static_cast<std::uint32_t>(n), number[joined_.nodes[n].place + strides[m]]);
+          groups.unite(static_cast<std::int32_t>(n),
+                       static_cast<std::int32_t>(number[joined_.nodes[n].place + strides[m]]));
     }
     return groups;
   }
@@ -107,11 +87,11 @@ class GapFinder {
   /// Nodes sorted by gap, by counting.
   void group(PlateGaps& result) const {
     const std::size_t count = joined_.nodes.size();
-    Groups groups = join();
+    DisjointSets groups = join();
     std::vector<std::uint32_t> gap_of(count), enclosed;
     for (std::size_t n = 0; n < count; ++n) {
-      const std::uint32_t root = groups.root(static_cast<std::uint32_t>(n));
-      if (root == n) {
+      const std::int32_t root = groups.root(static_cast<std::int32_t>(n));
+      if (static_cast<std::size_t>(root) == n) {
         gap_of[n] = static_cast<std::uint32_t>(result.gaps.size());
         result.gaps.push_back({});
         enclosed.push_back(0);

@@ -16,7 +16,8 @@ double product_value(float f, float low, float high) {
   return from_low * to_high;
 }
 
-/// Scales by a power of two so that the largest magnitude is near 1: degree 4 then stays within a double's exponents.
+/// Scales by a power of two so that the largest magnitude is near 1: degree 4 then does not overflow a double. Nothing
+/// is lost: g is a multiple of 2^-298 and smaller than 2^258.
 void normalise(std::array<double, 8>& values) {
   double largest = 0;
   for (double v : values) largest = std::max(largest, std::fabs(v));

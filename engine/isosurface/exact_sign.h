@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace geosis {
@@ -19,6 +21,8 @@ struct Bounded {
 namespace detail {
 // Twice the rounding unit, so that the roundings of the bound itself are covered.
 inline constexpr double kRounding = 2.220446049250313e-16;
+// More than the products below can lose where they are too small for a double's full precision.
+inline constexpr double kUnderflow = std::numeric_limits<double>::min();
 }  // namespace detail
 
 inline Bounded operator+(Bounded a, Bounded b) {
@@ -29,17 +33,23 @@ inline Bounded operator-(Bounded a, Bounded b) {
   return a + Bounded{-b.value, b.error};
 }
 inline Bounded operator*(Bounded a, Bounded b) {
+  const bool is_zero = (a.value == 0 && a.error == 0) || (b.value == 0 && b.error == 0);
+  if (is_zero) return {};
   const double value = a.value * b.value;
   const double carried = std::fabs(a.value) * b.error + std::fabs(b.value) * a.error + a.error * b.error;
-  return {value, carried + detail::kRounding * (std::fabs(value) + carried)};
+  return {value, carried + detail::kRounding * (std::fabs(value) + carried) + detail::kUnderflow};
 }
 
-/// An exact number: the unevaluated sum of doubles that do not overlap, smallest first.
+/// An exact number: the unevaluated sum of long doubles that do not overlap, smallest first.
 ///
-/// Exact for polynomials up to degree 4 of float32 values, and up to degree 2 of products of two of them: no
-/// intermediate leaves the exponent range. Slow, so used only where Bounded does not decide. source   Shewchuk 1997,
-/// "Adaptive precision floating-point arithmetic".
+/// Exact for polynomials up to degree 4 of float32 values and of doubles formed as products of two of them, scaled or
+/// not: such numbers lie between 2^-2224 and 2^1040, more than a double's exponents hold and far within those of a long
+/// double. Slow, so used only where Bounded does not decide. source   Shewchuk 1997, "Adaptive precision
+/// floating-point arithmetic".
 class Exact {
+  using Part = long double;
+  static_assert(std::numeric_limits<Part>::min_exponent <= -16381 && std::numeric_limits<Part>::max_exponent >= 16384);
+
  public:
   Exact() = default;
   explicit Exact(double value) {
@@ -49,19 +59,19 @@ class Exact {
   int sign() const { return parts_.empty() ? 0 : parts_.back() > 0 ? 1 : -1; }
 
   friend Exact operator+(Exact a, const Exact& b) {
-    for (double part : b.parts_) a.add(part);
+    for (const Part part : b.parts_) a.add(part);
     return a;
   }
   friend Exact operator-(const Exact& a, const Exact& b) {
     Exact sum = a;
-    for (double part : b.parts_) sum.add(-part);
+    for (const Part part : b.parts_) sum.add(-part);
     return sum;
   }
   friend Exact operator*(const Exact& a, const Exact& b) {
     Exact product;
-    for (double x : a.parts_) {
-      for (double y : b.parts_) {
-        const double high = x * y;
+    for (const Part x : a.parts_) {
+      for (const Part y : b.parts_) {
+        const Part high = x * y;
         product.add(product_error(x, y, high));
         product.add(high);
       }
@@ -71,12 +81,12 @@ class Exact {
 
  private:
   // Grow-expansion with zero elimination.
-  void add(double carry) {
+  void add(Part carry) {
     std::size_t kept = 0;
-    for (double part : parts_) {
-      const double sum = carry + part;
-      const double from_part = sum - carry;
-      const double rest = (carry - (sum - from_part)) + (part - from_part);
+    for (const Part part : parts_) {
+      const Part sum = carry + part;
+      const Part from_part = sum - carry;
+      const Part rest = (carry - (sum - from_part)) + (part - from_part);
       if (rest != 0) parts_[kept++] = rest;
       carry = sum;
     }
@@ -84,16 +94,17 @@ class Exact {
     if (carry != 0) parts_.push_back(carry);
   }
 
-  // Error of high = x * y, by splitting each factor into two halves of 26 bits (Dekker, Veltkamp).
-  static double product_error(double x, double y, double high) {
-    constexpr double kSplitter = 134217729.0;  // 2^27 + 1
-    const double cx = kSplitter * x, cy = kSplitter * y;
-    const double xh = cx - (cx - x), yh = cy - (cy - y);
-    const double xl = x - xh, yl = y - yh;
+  // Error of high = x * y, by splitting each factor into two halves of its bits (Dekker, Veltkamp).
+  static Part product_error(Part x, Part y, Part high) {
+    constexpr int kHalf = (std::numeric_limits<Part>::digits + 1) / 2;
+    constexpr Part kSplitter = static_cast<Part>(std::uint64_t{1} << kHalf) + 1;
+    const Part cx = kSplitter * x, cy = kSplitter * y;
+    const Part xh = cx - (cx - x), yh = cy - (cy - y);
+    const Part xl = x - xh, yl = y - yh;
     return xl * yl - (((high - xh * yh) - xl * yh) - xh * yl);
   }
 
-  std::vector<double> parts_;
+  std::vector<Part> parts_;
 };
 
 }  // namespace geosis

@@ -57,9 +57,11 @@ IndexedMesh extract_surface(const ScalarField& field, IsoRange range, BodyMode m
   return {};
 }
 
-Verdict judge_closed_surface(const ScalarField& field, IsoRange range, BodyMode mode) {
+namespace {
+
+Verdict judge_closed(const ScalarField& field, IsoRange range, BodyMode mode, Arithmetic arithmetic) {
   const MeshCensus found = census(extract_surface(field, range, mode));
-  const SurfaceTopology expected = expected_surface(field, range, mode);
+  const SurfaceTopology expected = expected_surface(field, range, mode, arithmetic);
   if (!found.is_closed_manifold()) return {sentence("not closed and manifold: ", found), expected.decided};
   if (found.off_lattice > 0) return {sentence("off the lattice: ", found), expected.decided};
   // In a body thinner than what flat triangles miss of a trilinear cell, both sheets may cross: no sign to tell.
@@ -71,13 +73,31 @@ Verdict judge_closed_surface(const ScalarField& field, IsoRange range, BodyMode 
   return {compare(found, expected, true), true};
 }
 
-Verdict judge_open_surface(const ScalarField& field, IsoRange range, BodyMode mode) {
+Verdict judge_open(const ScalarField& field, IsoRange range, BodyMode mode, Arithmetic arithmetic) {
   const MeshCensus found = census(extract_surface(field, range, mode, false));
-  const SurfaceTopology expected = expected_open_surface(field, range, mode);
+  const SurfaceTopology expected = expected_open_surface(field, range, mode, arithmetic);
   if (!found.is_manifold()) return {sentence("not manifold: ", found), expected.decided};
   if (found.off_lattice > 0) return {sentence("off the lattice: ", found), expected.decided};
   if (!expected.decided) return {{}, false};
   return {compare(found, expected, false), true};
+}
+
+}  // namespace
+
+Verdict judge_closed_surface(const ScalarField& field, IsoRange range, BodyMode mode) {
+  return judge_closed(field, range, mode, Arithmetic::rounded);
+}
+
+Verdict judge_open_surface(const ScalarField& field, IsoRange range, BodyMode mode) {
+  return judge_open(field, range, mode, Arithmetic::rounded);
+}
+
+Verdict judge_closed_surface_exactly(const ScalarField& field, IsoRange range, BodyMode mode) {
+  return judge_closed(field, range, mode, Arithmetic::exact);
+}
+
+Verdict judge_open_surface_exactly(const ScalarField& field, IsoRange range, BodyMode mode) {
+  return judge_open(field, range, mode, Arithmetic::exact);
 }
 
 Verdict judge_decoded_surface(const ScalarField& field, IsoRange range, BodyMode mode) {

@@ -24,6 +24,10 @@ Verdict judge_closed_surface(const ScalarField& field, IsoRange range, BodyMode 
 /// The surface without caps is manifold with boundary and has the oracle's Euler characteristic.
 Verdict judge_open_surface(const ScalarField& field, IsoRange range, BodyMode mode);
 
+/// The same two, with an oracle that counts exactly: decided for all samples.
+Verdict judge_closed_surface_exactly(const ScalarField& field, IsoRange range, BodyMode mode);
+Verdict judge_open_surface_exactly(const ScalarField& field, IsoRange range, BodyMode mode);
+
 /// Encoded in several parts and decoded, the capped surface keeps its topology, its volume and its vertex positions.
 Verdict judge_decoded_surface(const ScalarField& field, IsoRange range, BodyMode mode);
 

@@ -1,7 +1,10 @@
 #include "tests/support/body_oracle.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+
+#include <gmpxx.h>
 
 #include "tests/support/body_components.h"
 #include "tests/support/cell_topology.h"
@@ -26,14 +29,15 @@ struct StratumEuler {
 
 // The corners of a stratum in ascending order, as many as it has.
 template <class Sides>
-std::array<CornerValue, 8> corners_of(const ScalarField& field, const Sides& sides, const Stratum& stratum) {
-  std::array<CornerValue, 8> corners;
+CellCorners<typename Sides::Number> corners_of(const ScalarField& field, const Sides& sides, const Stratum& stratum) {
+  CellCorners<typename Sides::Number> corners;
   std::size_t count = 0;
   stratum.for_each_corner([&](GridIndex n) { corners[count++] = sides.corner(field.at(n)); });
   return corners;
 }
 
-StratumEuler stratum_euler(const std::array<CornerValue, 8>& corners, int dimension) {
+template <class Number>
+StratumEuler stratum_euler(const CellCorners<Number>& corners, int dimension) {
   StratumEuler euler;
   if (dimension == 3) {
     const CellTopology topology = cell_topology(corners);
@@ -43,7 +47,7 @@ StratumEuler stratum_euler(const std::array<CornerValue, 8>& corners, int dimens
     if (dimension == 0) euler.outside[o] = corners[0].in(o);
     if (dimension == 1) euler.outside[o] = corners[0].in(o) && corners[1].in(o) ? -1 : 0;
     if (dimension == 2) {
-      const SquareDecision decision = decide_square({corners[0], corners[1], corners[3], corners[2]}, o);
+      const SquareDecision decision = decide_square<Number>({corners[0], corners[1], corners[3], corners[2]}, o);
       euler.outside[o] = open_square_euler(decision.pattern);
       euler.decided = euler.decided && !decision.tied;
     }
@@ -79,13 +83,15 @@ CellTopology uniform_cell(bool has_body) {
   return topology;
 }
 
-CellTopology topology_of(const ScalarField& field, const BodySides& sides, GridIndex cell) {
+template <class Number>
+CellTopology topology_of(const ScalarField& field, const BodySides<Number>& sides, GridIndex cell) {
   const Stratum stratum{cell, 7};
   if (is_uniform(field, sides, stratum)) return uniform_cell(sides.side(field.at(cell)) == Side::inside);
   return cell_topology(corners_of(field, sides, stratum));
 }
 
-std::int64_t surface_components(const ScalarField& field, const Domain& domain, const BodySides& sides) {
+template <class Number>
+std::int64_t surface_components(const ScalarField& field, const Domain& domain, const BodySides<Number>& sides) {
   BandComponents body(domain.cells());
   RestComponents rest(field.shape);
   const auto is_inside = [&](GridIndex n) { return sides.side(field.at(n)) == Side::inside; };
@@ -128,11 +134,10 @@ SurfaceTopology level_set(const ScalarField& field, const Domain& domain, const 
   return surface;
 }
 
-}  // namespace
-
-SurfaceTopology expected_surface(const ScalarField& field, IsoRange range, BodyMode mode) {
+template <class Number>
+SurfaceTopology closed_surface(const ScalarField& field, IsoRange range, BodyMode mode, const Number& apart) {
   const Domain domain(field);
-  const BodySides sides(range, mode);
+  const BodySides<Number> sides(range, mode, apart);
   std::int64_t open_body = 0, tubes = 0;
   SurfaceTopology surface;
   surface.decided = for_each_euler(field, domain, sides, [&](const Stratum& stratum, int body) {
@@ -147,18 +152,55 @@ SurfaceTopology expected_surface(const ScalarField& field, IsoRange range, BodyM
   return surface;
 }
 
-SurfaceTopology expected_open_surface(const ScalarField& field, IsoRange range, BodyMode mode) {
+template <class Number>
+SurfaceTopology open_surface(const ScalarField& field, IsoRange range, BodyMode mode, const Number& apart) {
   const Domain domain(field);
-  if (mode == BodyMode::sampled) return level_set(field, domain, ProductSides(range));
+  if (mode == BodyMode::sampled) return level_set(field, domain, ProductSides<Number>(range, apart));
   SurfaceTopology surface;
   for (const bool at_low : {true, false}) {
     const float level = at_low ? range.low : range.high;
     if (std::isinf(level)) continue;
-    const SurfaceTopology sheet = level_set(field, domain, LevelSides(level, at_low));
+    const SurfaceTopology sheet = level_set(field, domain, LevelSides<Number>(level, at_low, apart));
     surface.decided = surface.decided && sheet.decided;
     surface.euler += sheet.euler;
   }
   return surface;
+}
+
+// All finite numbers are multiples of 2^lowest and smaller than 2^highest.
+struct Exponents {
+  int lowest = 0, highest = 0;
+
+  void widen(float f) {
+    if (f == 0 || !std::isfinite(f)) return;
+    lowest = std::min(lowest, std::max(std::ilogb(f) - 23, -149));
+    highest = std::max(highest, std::ilogb(f) + 1);
+  }
+};
+
+// A distance that decides ties and nothing else. Each sign that the oracle asks for is that of a polynomial of at most
+// kDegree in the samples, the ends and the distance, whose coefficients, samples put in, are multiples of
+// 2^(kDegree lowest): the first that is not zero must outweigh all that follow, with some bits for their factors.
+mpq_class tie_breaker(const ScalarField& field, IsoRange range, BodyMode mode) {
+  constexpr int kDegree = 6, kFactorBits = 40;
+  Exponents bits;
+  for (const float f : field.samples) bits.widen(f);
+  for (const float end : {range.low, range.high}) bits.widen(end);
+  if (mode == BodyMode::sampled) bits = {2 * bits.lowest, 2 * bits.highest + 2};  // products of two differences
+  const int exponent = kDegree * (bits.highest - bits.lowest) - bits.highest + kFactorBits;
+  return mpq_class(1, mpz_class(1) << static_cast<unsigned>(exponent));
+}
+
+}  // namespace
+
+SurfaceTopology expected_surface(const ScalarField& field, IsoRange range, BodyMode mode, Arithmetic arithmetic) {
+  if (arithmetic == Arithmetic::rounded) return closed_surface<long double>(field, range, mode, 0);
+  return closed_surface(field, range, mode, tie_breaker(field, range, mode));
+}
+
+SurfaceTopology expected_open_surface(const ScalarField& field, IsoRange range, BodyMode mode, Arithmetic arithmetic) {
+  if (arithmetic == Arithmetic::rounded) return open_surface<long double>(field, range, mode, 0);
+  return open_surface(field, range, mode, tie_breaker(field, range, mode));
 }
 
 }  // namespace geosis::test

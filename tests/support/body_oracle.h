@@ -16,6 +16,14 @@ struct SurfaceTopology {
   bool operator==(const SurfaceTopology&) const = default;
 };
 
+/// What the oracle counts with.
+enum class Arithmetic {
+  rounded,  ///< long double: quick; leaves saddles near an end of the range undecided, and for samples that differ by
+            ///< more than its 64 bits may order two changes within a cell wrongly
+  exact,    ///< rational numbers, about 100 times slower; always decided: the ends are moved outwards by an eps > 0 so
+            ///< small that it decides ties alone (docs/adr/0007)
+};
+
 /// Topology of the closed surface of {low <= f <= high}, capped on the domain's border, split where the body only
 /// touches itself. Knows nothing of meshes or case tables.
 ///
@@ -27,10 +35,12 @@ struct SurfaceTopology {
 /// minus that of {f < low} and of {f > high}. Components come from those of the cells, joined across faces (int) and
 /// at nodes (the rest).
 ///
-/// cost     O(nodes); about a second for ten million, 20 bytes a node.
-SurfaceTopology expected_surface(const ScalarField& field, IsoRange range, BodyMode mode);
+/// cost     O(nodes); rounded: about a second for ten million, 20 bytes a node.
+SurfaceTopology expected_surface(const ScalarField& field, IsoRange range, BodyMode mode,
+                                 Arithmetic arithmetic = Arithmetic::rounded);
 
 /// The same for the surface without caps: two-manifold with boundary, Euler characteristic only (components stays 0).
-SurfaceTopology expected_open_surface(const ScalarField& field, IsoRange range, BodyMode mode);
+SurfaceTopology expected_open_surface(const ScalarField& field, IsoRange range, BodyMode mode,
+                                      Arithmetic arithmetic = Arithmetic::rounded);
 
 }  // namespace geosis::test

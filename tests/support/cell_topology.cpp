@@ -6,6 +6,8 @@
 #include <map>
 #include <vector>
 
+#include <gmpxx.h>
+
 #include "tests/support/union_find.h"
 
 // A cell is swept by squares of constant k = t, 0 <= t <= 1. On each square f is bilinear, and what matters of it is
@@ -20,8 +22,14 @@
 namespace geosis::test {
 namespace {
 
-// Nearer to zero than this, relative to the terms it comes from, a determinant's sign is not trusted.
-constexpr long double kTie = 1e4L * std::numeric_limits<long double>::epsilon();
+// Whether the sign of a determinant of terms of this size is not to be trusted.
+bool is_tie(long double determinant, long double size) {
+  constexpr long double kTie = 1e4L * std::numeric_limits<long double>::epsilon();
+  return std::abs(determinant) <= kTie * size;
+}
+bool is_tie(const mpq_class& determinant, const mpq_class&) {
+  return determinant == 0;
+}
 
 // Corners of the square at t = 0 in cyclic order as corners of the cell; the square at t = 1 has the next numbers.
 constexpr std::array<int, 4> kBottom = {0, 4, 6, 2};
@@ -31,17 +39,20 @@ constexpr std::array<int, 4> kBottomEdge = {cell_edge(0, 0, 0), cell_edge(1, 1, 
 constexpr std::array<int, 4> kUprightEdge = {cell_edge(2, 0, 0), cell_edge(2, 1, 0), cell_edge(2, 1, 1),
                                              cell_edge(2, 0, 1)};
 
+enum class Kind { leave, enter, join, part };
+
+template <class Number>
 struct Change {
-  enum Kind { leave, enter, join, part };
-  long double t;
+  Number t;
   Kind kind;
   int outside;
   int corner;  // of the square; unused by join and part
 };
 
 // Leaving comes before entering, so that no corner is ever on both sides of the range.
-bool comes_before(const Change& a, const Change& b) {
-  return a.t < b.t || (a.t == b.t && a.kind == Change::leave && b.kind != Change::leave);
+template <class Number>
+bool comes_before(const Change<Number>& a, const Change<Number>& b) {
+  return a.t < b.t || (a.t == b.t && a.kind == Kind::leave && b.kind != Kind::leave);
 }
 
 struct Piece {
@@ -55,80 +66,91 @@ struct Piece {
   }
 };
 
-SquareCorners square_at(const CellCorners& cell, int t) {
-  SquareCorners square;
+template <class Number>
+SquareCorners<Number> square_at(const CellCorners<Number>& cell, int t) {
+  SquareCorners<Number> square;
   for (int c = 0; c < 4; ++c) square[c] = cell[kBottom[c] + t];
   return square;
 }
 
 // The two upright edges of one corner of the square, as a linear function of t.
+template <class Number>
 struct Upright {
-  long double bottom, top;
-  long double at(long double t) const { return bottom + (top - bottom) * t; }
-  long double slope() const { return top - bottom; }
-  long double size() const { return std::max(std::abs(bottom), std::abs(top)); }
+  Number bottom, top;
+  Number at(const Number& t) const { return bottom + (top - bottom) * t; }
+  Number slope() const { return top - bottom; }
+  Number size() const { return std::max<Number>(abs(bottom), abs(top)); }
+
+ private:
+  static Number abs(const Number& x) { return x < 0 ? Number(-x) : x; }
 };
 
-Upright upright(const CellCorners& cell, int outside, int c) {
+template <class Number>
+Upright<Number> upright(const CellCorners<Number>& cell, int outside, int c) {
   return {cell[kBottom[c % 4]].excess[outside], cell[kBottom[c % 4] + 1].excess[outside]};
 }
 
-std::vector<Change> corner_changes(const CellCorners& cell, int outside) {
-  std::vector<Change> changes;
+template <class Number>
+std::vector<Change<Number>> corner_changes(const CellCorners<Number>& cell, int outside) {
+  std::vector<Change<Number>> changes;
   for (int c = 0; c < 4; ++c) {
     const bool starts_in = cell[kBottom[c]].in(outside);
     if (starts_in == cell[kBottom[c] + 1].in(outside)) continue;
-    const Upright e = upright(cell, outside, c);
-    changes.push_back({e.bottom / (e.bottom - e.top), starts_in ? Change::leave : Change::enter, outside, c});
+    const Upright<Number> e = upright(cell, outside, c);
+    changes.push_back({Number(e.bottom / (e.bottom - e.top)), starts_in ? Kind::leave : Kind::enter, outside, c});
   }
-  std::sort(changes.begin(), changes.end(), comes_before);
+  std::sort(changes.begin(), changes.end(), comes_before<Number>);
   return changes;
 }
 
 // Where corners c and c + 2 are in the set over the whole slab (from, to) and start and end equally joined, the saddle
 // may still cross the end of the range twice in between. True if so; `at` is the extremum of AC - BD.
-bool saddle_crosses_twice(const CellCorners& cell, int outside, int c, const Change& from, const Change& to,
-                          bool joined, long double& at, bool& decided) {
-  const Upright A = upright(cell, outside, c), B = upright(cell, outside, c + 1);
-  const Upright C = upright(cell, outside, c + 2), D = upright(cell, outside, c + 3);
-  const long double quadratic = A.slope() * C.slope() - B.slope() * D.slope();
-  const long double linear = A.slope() * C.bottom + A.bottom * C.slope() - B.slope() * D.bottom - B.bottom * D.slope();
+template <class Number>
+bool saddle_crosses_twice(const CellCorners<Number>& cell, int outside, int c, const Change<Number>& from,
+                          const Change<Number>& to, bool joined, Number& at, bool& decided) {
+  const Upright<Number> A = upright(cell, outside, c), B = upright(cell, outside, c + 1);
+  const Upright<Number> C = upright(cell, outside, c + 2), D = upright(cell, outside, c + 3);
+  const Number quadratic = A.slope() * C.slope() - B.slope() * D.slope();
+  const Number linear = A.slope() * C.bottom + A.bottom * C.slope() - B.slope() * D.bottom - B.bottom * D.slope();
+  if (quadratic == 0) return false;
   at = -linear / (2 * quadratic);
   if (!(from.t < at && at < to.t)) return false;
-  const long double extremum = A.at(at) * C.at(at) - B.at(at) * D.at(at);
-  if (std::abs(extremum) <= kTie * (A.size() * C.size() + B.size() * D.size())) decided = false;
+  const Number extremum = A.at(at) * C.at(at) - B.at(at) * D.at(at);
+  if (is_tie(extremum, Number(A.size() * C.size() + B.size() * D.size()))) decided = false;
   return joined != (extremum >= 0);
 }
 
 // All changes of one set in their order: corners, and the diagonal's joins and parts. Next to a corner's change the
 // sign of AC - BD is that of one product, so neither needs a computed root; a root's place within its slab is free.
-std::vector<Change> changes_of(const CellCorners& cell, int outside, const SquarePattern& bottom, bool top_joined,
-                               bool& decided) {
-  std::vector<Change> corners = corner_changes(cell, outside);
-  corners.push_back({1, top_joined ? Change::enter : Change::leave, outside, -1});  // the top square, as a sentinel
-  std::vector<Change> all;
+template <class Number>
+std::vector<Change<Number>> changes_of(const CellCorners<Number>& cell, int outside, const SquarePattern& bottom,
+                                       bool top_joined, bool& decided) {
+  std::vector<Change<Number>> corners = corner_changes(cell, outside);
+  corners.push_back({Number(1), top_joined ? Kind::enter : Kind::leave, outside, -1});  // the top square, as a sentinel
+  std::vector<Change<Number>> all;
   SquarePattern pattern = bottom;
-  Change from{0, bottom.joined ? Change::leave : Change::enter, outside, -1};
-  for (const Change& to : corners) {
-    const bool joined = from.kind == Change::leave, ends_joined = to.kind == Change::enter;
-    long double at = 0;
+  Change<Number> from{Number(0), bottom.joined ? Kind::leave : Kind::enter, outside, -1};
+  for (const Change<Number>& to : corners) {
+    const bool joined = from.kind == Kind::leave, ends_joined = to.kind == Kind::enter;
+    Number at = 0;
     if (pattern.is_diagonal() && joined != ends_joined) {
-      all.push_back({(from.t + to.t) / 2, joined ? Change::part : Change::join, outside, -1});
+      all.push_back({Number((from.t + to.t) / 2), joined ? Kind::part : Kind::join, outside, -1});
     } else if (pattern.is_diagonal() &&
                saddle_crosses_twice(cell, outside, pattern.in[0] ? 0 : 1, from, to, joined, at, decided)) {
-      all.push_back({at, joined ? Change::part : Change::join, outside, -1});
-      all.push_back({at, joined ? Change::join : Change::part, outside, -1});
+      all.push_back({at, joined ? Kind::part : Kind::join, outside, -1});
+      all.push_back({at, joined ? Kind::join : Kind::part, outside, -1});
     }
     if (to.corner < 0) break;
     all.push_back(to);
-    pattern.in[to.corner] = to.kind == Change::enter;
+    pattern.in[to.corner] = to.kind == Kind::enter;
     from = to;
   }
   return all;
 }
 
-std::vector<Change> merged(const std::vector<Change>& a, const std::vector<Change>& b) {
-  std::vector<Change> all;
+template <class Number>
+std::vector<Change<Number>> merged(const std::vector<Change<Number>>& a, const std::vector<Change<Number>>& b) {
+  std::vector<Change<Number>> all;
   std::size_t i = 0, j = 0;
   while (i < a.size() || j < b.size()) {
     const bool take_a = j == b.size() || (i < a.size() && !comes_before(b[j], a[i]));
@@ -137,27 +159,28 @@ std::vector<Change> merged(const std::vector<Change>& a, const std::vector<Chang
   return all;
 }
 
-std::vector<Piece> pieces_of(const CellCorners& cell, bool& decided) {
-  const SquareCorners bottom = square_at(cell, 0), top = square_at(cell, 1);
+template <class Number>
+std::vector<Piece> pieces_of(const CellCorners<Number>& cell, bool& decided) {
+  const SquareCorners<Number> bottom = square_at(cell, 0), top = square_at(cell, 1);
   Piece now{true, {}};
-  std::array<std::vector<Change>, kOutsides> changes;
+  std::array<std::vector<Change<Number>>, kOutsides> changes;
   for (int o = 0; o < kOutsides; ++o) {
     now.outside[o] = decide_square(bottom, o).pattern;
     changes[o] = changes_of(cell, o, now.outside[o], decide_square(top, o).pattern.joined, decided);
   }
   std::vector<Piece> pieces{now};
-  for (const Change& change : merged(changes[kBelow], changes[kAbove])) {
+  for (const Change<Number>& change : merged(changes[kBelow], changes[kAbove])) {
     now.is_slice = false;
     pieces.push_back(now);
     SquarePattern& pattern = now.outside[change.outside];
     now.is_slice = true;
-    if (change.kind == Change::enter) pattern.in[change.corner] = true;
-    if (change.kind == Change::enter) pattern.joined = false;
-    if (change.kind == Change::join) pattern.joined = true;
+    if (change.kind == Kind::enter) pattern.in[change.corner] = true;
+    if (change.kind == Kind::enter) pattern.joined = false;
+    if (change.kind == Kind::join) pattern.joined = true;
     pieces.push_back(now);
-    if (change.kind == Change::leave) pattern.in[change.corner] = false;
-    if (change.kind == Change::leave) pattern.joined = true;
-    if (change.kind == Change::part) pattern.joined = false;
+    if (change.kind == Kind::leave) pattern.in[change.corner] = false;
+    if (change.kind == Kind::leave) pattern.joined = true;
+    if (change.kind == Kind::part) pattern.joined = false;
   }
   now.is_slice = false;
   pieces.push_back(now);
@@ -240,15 +263,16 @@ void find_rest(const std::vector<Piece>& pieces, CellTopology& topology) {
 
 }  // namespace
 
-SquareDecision decide_square(const SquareCorners& corners, int outside) {
+template <class Number>
+SquareDecision decide_square(const SquareCorners<Number>& corners, int outside) {
   SquareDecision decision;
   for (int c = 0; c < 4; ++c) decision.pattern.in[c] = corners[c].in(outside);
   if (!decision.pattern.is_diagonal()) return decision;
   const int c = decision.pattern.in[0] ? 0 : 1;
-  const long double in_product = corners[c].excess[outside] * corners[c + 2].excess[outside];
-  const long double out_product = corners[c + 1].excess[outside] * corners[(c + 3) % 4].excess[outside];
+  const Number in_product = corners[c].excess[outside] * corners[c + 2].excess[outside];
+  const Number out_product = corners[c + 1].excess[outside] * corners[(c + 3) % 4].excess[outside];
   decision.pattern.joined = in_product >= out_product;
-  decision.tied = std::abs(in_product - out_product) <= kTie * (in_product + out_product);
+  decision.tied = is_tie(Number(in_product - out_product), Number(in_product + out_product));
   return decision;
 }
 
@@ -260,7 +284,8 @@ int open_square_euler(const SquarePattern& pattern) {
   return closed - corners + full_sides;
 }
 
-CellTopology cell_topology(const CellCorners& corners) {
+template <class Number>
+CellTopology cell_topology(const CellCorners<Number>& corners) {
   CellTopology topology;
   const std::vector<Piece> pieces = pieces_of(corners, topology.decided);
   for (std::size_t p = 1; p + 1 < pieces.size(); ++p)
@@ -270,5 +295,10 @@ CellTopology cell_topology(const CellCorners& corners) {
   find_rest(pieces, topology);
   return topology;
 }
+
+template SquareDecision decide_square(const SquareCorners<long double>&, int);
+template SquareDecision decide_square(const SquareCorners<mpq_class>&, int);
+template CellTopology cell_topology(const CellCorners<long double>&);
+template CellTopology cell_topology(const CellCorners<mpq_class>&);
 
 }  // namespace geosis::test

@@ -9,8 +9,8 @@
 namespace geosis::test {
 namespace {
 
-CellTopology topology_of(const ScalarField& field, const BodySides& sides, GridIndex cell) {
-  CellCorners corners;
+CellTopology topology_of(const ScalarField& field, const BodySides<long double>& sides, GridIndex cell) {
+  CellCorners<long double> corners;
   bool uniform = true;
   for (int c = 0; c < 8; ++c) {
     corners[c] = sides.corner(field.at(cell + unit_corner(c)));
@@ -23,7 +23,7 @@ CellTopology topology_of(const ScalarField& field, const BodySides& sides, GridI
   return topology;
 }
 
-bool faces_decided(const ScalarField& field, const BodySides& sides, GridIndex cell) {
+bool faces_decided(const ScalarField& field, const BodySides<long double>& sides, GridIndex cell) {
   bool decided = true;
   for (int normal = 0; normal < 3; ++normal) {
     GridIndex u, v;
@@ -33,7 +33,8 @@ bool faces_decided(const ScalarField& field, const BodySides& sides, GridIndex c
       GridIndex start = cell;
       start[normal] += side;
       const auto corner = [&](GridIndex n) { return sides.corner(field.at(n)); };
-      const SquareCorners square{corner(start), corner(start + u), corner(start + u + v), corner(start + v)};
+      const SquareCorners<long double> square{corner(start), corner(start + u), corner(start + u + v),
+                                              corner(start + v)};
       for (int outside = 0; outside < kOutsides; ++outside) {
         decided = decided && !decide_square(square, outside).tied;
       }
@@ -43,7 +44,7 @@ bool faces_decided(const ScalarField& field, const BodySides& sides, GridIndex c
 }
 
 // Low and high end at one place of an edge may hide the band between them, where a saddle is there as well.
-bool edges_decided(const ScalarField& field, const BodySides& sides, GridIndex cell,
+bool edges_decided(const ScalarField& field, const BodySides<long double>& sides, GridIndex cell,
                    const std::array<std::int8_t, 12>& band_of_edge) {
   bool decided = true;
   for (int e = 0; e < 12; ++e) {
@@ -73,7 +74,7 @@ SolidOracle::SolidOracle(const ScalarField& field, IsoRange range, BodyMode mode
 }
 
 void SolidOracle::join_cells(const ScalarField& field, IsoRange range, BodyMode mode) {
-  const BodySides sides(range, mode);
+  const BodySides<long double> sides(range, mode, 0);
   UnionFind bands;
   for_each_node(domain_.cells(), [&](GridIndex cell) {
     if (!domain_.has(cell)) return;
@@ -114,7 +115,7 @@ void SolidOracle::join_cells(const ScalarField& field, IsoRange range, BodyMode 
 }
 
 void SolidOracle::place_nodes(const ScalarField& field, IsoRange range, BodyMode mode) {
-  const BodySides sides(range, mode);
+  const BodySides<long double> sides(range, mode, 0);
   of_node_.assign(static_cast<std::size_t>(nodes_.count()), -1);
   for_each_node(nodes_, [&](GridIndex node) {
     if (sides.side(field.at(node)) != Side::inside) return;

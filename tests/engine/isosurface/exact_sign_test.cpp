@@ -42,6 +42,22 @@ TEST(Exact, KeepsTheSmallestAndLargestFloatsApart) {
   EXPECT_EQ((power + tiny - power).sign(), 1);
 }
 
+// g of the sampled mode: down to 2^-298, up to 2^258, scaled to 1.
+TEST(Exact, KeepsProductsOfFloatsApartThatDifferMost) {
+  const Exact tiny(0x1p-556), one(1);
+  const Exact power = tiny * tiny * tiny * tiny;
+  EXPECT_EQ((one + power - one).sign(), 1);
+  EXPECT_EQ((power - tiny * tiny * tiny * Exact(0x3p-557)).sign(), -1);
+}
+
+TEST(Bounded, DoesNotDecideWhereProductsUnderflow) {
+  const Bounded tiny(0x1p-556), rounded = Bounded(0x1.8p-556, 0x1p-600);
+  EXPECT_FALSE((tiny * tiny).decides());
+  EXPECT_FALSE((tiny * tiny - tiny * rounded).decides());
+  EXPECT_FALSE((Bounded(0, 0x1p-600) * tiny).decides());
+  EXPECT_TRUE((Bounded(0) * tiny).decides());
+}
+
 TEST(Bounded, NeverDecidesAgainstTheExactSign) {
   std::mt19937_64 random(11);
   std::uniform_real_distribution<double> number(-1, 1);

@@ -15,11 +15,6 @@ bool holds(RingTriangle t, LocalVertex v) {
   return t.a == v || t.b == v;
 }
 
-Mask4 lanes_below(int first, int end) {
-  const Mask4 lane{first, first + 1, first + 2, first + 3};
-  return lane < end;
-}
-
 float to_lattice(float x) {
   constexpr float kSteps = static_cast<float>(kLatticeStepsPerVoxel);
   return static_cast<float>(static_cast<std::int32_t>(x * kSteps + (x < 0 ? -0.5f : 0.5f))) * kLatticeStep;

@@ -35,6 +35,16 @@ inline float select(bool condition, float yes, float no) {
   return condition ? yes : no;
 }
 
+inline Float4 magnitude(Float4 x) {
+  return select(x < 0.0f, -x, x);
+}
+
+/// The lanes first ... first + 3 that are below end.
+inline Mask4 lanes_below(int first, int end) {
+  const Mask4 lane{first, first + 1, first + 2, first + 3};
+  return lane < end;
+}
+
 inline float sum(Float4 x) {
   return (x[0] + x[1]) + (x[2] + x[3]);
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "engine/mesh/indexed_mesh.h"
 #include "engine/mesh/lattice_triangles.h"
@@ -82,8 +83,8 @@ class PlacedStar {
 
   /// other   without the star's vertex.
   bool meets(const Corners& other) const {
-    const Bounds bounds(other);
     const Steps normal = normal_of(other);
+    const Bounds bounds(other);
     for (int i = 0; i < degree_; ++i) {
       if (bounds_[i].meet(bounds) && meets(i, other, normal)) return true;
     }
@@ -115,7 +116,14 @@ class PlacedStar {
       count += corner.id != a.id && corner.id != b.id;
     }
     if (count == 1) return is_folded(i, normal, *apart[0]);
-    if (count == 2 && strictly_same_side(dot(normals_[i], apart[0]->at), dot(normals_[i], apart[1]->at))) return false;
+    // What they share lies in both planes, so only the other corners tell.
+    bool above = true, below = true;
+    for (int k = 0; k < count; ++k) {
+      const double side = dot(normals_[i], apart[k]->at);
+      above &= side > 0;
+      below &= side < 0;
+    }
+    if (above || below) return false;
     return triangles_intersect(on_lattice(triangles_[i]), on_lattice(other));
   }
 
@@ -127,10 +135,39 @@ class PlacedStar {
   std::array<Bounds, kMaxMergedDegree> bounds_;
 };
 
+/// Whether all of a closed star, its vertex at `centre`, lies strictly on one side of the triangle's plane, but for the
+/// corners that both have. False also where float32 cannot tell.
+///
+/// in_common   how many corners both have.
+bool star_is_on_one_side(const MergedStar& star, const StarShape& shape, Vec3f centre, const std::array<Vec3f, 3>& t,
+                         int in_common) {
+  constexpr float kRounding = 1e-6f;  // several times that of a dot product
+  const Vec3f normal = cross(t[1] - t[0], t[2] - t[0]);
+  const Vec3<Float4> n = all4(normal), origin = all4(t[0]);
+  Mask4 above{}, below{}, on{};
+  for (int group = 0, first = 0; first < star.degree; ++group, first += kLanes) {
+    const Mask4 inside = lanes_below(first, star.degree);
+    const Vec3<Float4> arm = Vec3<Float4>(shape.a[group]) - origin;
+    const Float4 x = n.x * arm.x, y = n.y * arm.y, z = n.z * arm.z;
+    const Float4 side = x + y + z;
+    const Float4 unsure = (magnitude(x) + magnitude(y) + magnitude(z)) * kRounding;
+    above |= inside & (side > unsure);
+    below |= inside & (side < -unsure);
+    on -= inside & (magnitude(side) <= unsure);
+  }
+  if (on[0] + on[1] + on[2] + on[3] != in_common) return false;
+  const Vec3f arm = centre - t[0];
+  const float side = dot(normal, arm);
+  const float unsure =
+      kRounding * (std::abs(normal.x * arm.x) + std::abs(normal.y * arm.y) + std::abs(normal.z * arm.z));
+  return any(above) ? !any(below) && side > unsure : side < -unsure;
+}
+
 }  // namespace
 
-bool folds_over(const MergedStar& star, LocalVertex u, LocalVertex v, Vec3f position,
+bool folds_over(const MergedStar& star, const StarShape& shape, LocalVertex u, LocalVertex v, Vec3f position,
                 std::span<const WorkingVertex> vertices, const Rings& rings, VertexMarks& marks) {
+  const bool is_closed = !vertices[u].on_boundary && !vertices[v].on_boundary;
   const PlacedStar placed(star, u, position, vertices);
   if (placed.meets_itself()) return true;
   marks.clear();
@@ -143,6 +180,9 @@ bool folds_over(const MergedStar& star, LocalVertex u, LocalVertex v, Vec3f posi
     for (const auto [a, b] : rings.of(w)) {
       if (a == u || b == u || a == v || b == v) continue;
       if ((marks.has(a) && a < w) || (marks.has(b) && b < w)) continue;  // seen from that one
+      const std::array<Vec3f, 3> corners{vertices[w].position, vertices[a].position, vertices[b].position};
+      const int in_common = 1 + marks.has(a) + marks.has(b);
+      if (is_closed && star_is_on_one_side(star, shape, position, corners, in_common)) continue;
       if (placed.meets({{placed.corner(w), placed.corner(a), placed.corner(b)}})) return true;
     }
   }

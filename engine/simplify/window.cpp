@@ -195,7 +195,8 @@ bool Window::try_collapse(LocalVertex u, LocalVertex v) {
   Quadric merged = seen_from(sum, kept.position - position);
   merged.c = std::max(merged.c, 0.0f);
   if (!within_goal(merged.c, merged.trace())) return false;
-  if (goal_.refuse_folds && moved.sharp && folds_over(star, u, v, position, vertices_, rings_, marks_)) return false;
+  if (goal_.refuse_folds && moved.sharp && folds_over(star, shape, u, v, position, vertices_, rings_, marks_))
+    return false;
 
   max_cost_ = std::max(max_cost_, merged.c);
   // The planes that hold a boundary would fade away with the memory.

@@ -50,6 +50,26 @@ BENCHMARK(BM_BuildLods)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
+/// The same chain by the other strategy and placement; arguments: strategy, placement.
+void BM_Variants(benchmark::State& state) {
+  const IndexedMesh& mesh = phantom(80);
+  NoProgress progress;
+  const BuildLodsOptions options{.strategy = static_cast<Strategy>(state.range(0)),
+                                 .placement = static_cast<Placement>(state.range(1))};
+  for (auto _ : state) {
+    auto lods = build_lods(mesh, options, progress);
+    if (!lods) return state.SkipWithError(lods.error().message.c_str());
+    benchmark::DoNotOptimize(lods->levels.data());
+  }
+  set_rate(state, mesh);
+}
+BENCHMARK(BM_Variants)
+    ->ArgNames({"multiple_choice", "subset"})
+    ->ArgsProduct({{0, 1}, {0, 1}})
+    ->Unit(benchmark::kMillisecond)
+    ->MeasureProcessCPUTime()
+    ->UseRealTime();
+
 #ifdef GEOSIS_HAVE_MESHOPTIMIZER
 /// The same chain by the peer, which does not keep the topology; one thread.
 void BM_Meshoptimizer(benchmark::State& state) {

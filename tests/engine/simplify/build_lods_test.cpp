@@ -137,7 +137,7 @@ TEST(BuildLods, KeepsHandlesCavitiesAndHoles) {
 }
 
 TEST(BuildLods, KeepsTheTopologyOfNoise) {
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const std::array<int, 3> shape{13, 12, 14};
     for (const IndexedMesh& m0 :

@@ -21,7 +21,9 @@ struct Patch {
   bool folds_at(Vec3f position) {
     MergedStar star;
     EXPECT_TRUE(find_merged_star(0, 1, vertices, rings, marks, star));
-    return folds_over(star, 0, 1, position, vertices, rings, marks);
+    StarShape shape;
+    measure_star(star, 0, 1, vertices, shape);
+    return folds_over(star, shape, 0, 1, position, vertices, rings, marks);
   }
 };
 

@@ -132,7 +132,7 @@ TEST(LevelTargets, MaxCostBoundsTheCost) {
 }
 
 TEST(LevelTargets, MaxErrorIsMeasuredAndKept) {
-  const IndexedMesh m0 = gyroid_mesh();
+  const IndexedMesh m0 = mesh_field({16, 16, 16}, gyroid(12, 0.2));
   for (const WindowSizes& sizes : {WindowSizes{}, kSmallWindows}) {
     const LodHierarchy hierarchy =
         lods(m0,

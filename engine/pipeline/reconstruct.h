@@ -21,7 +21,7 @@
 namespace geosis {
 
 /// Raised only when output bytes change; part of every extraction id.
-inline constexpr int kResultVersion = 1;
+inline constexpr int kResultVersion = 2;
 
 /// The request's part that the engine computes from; documents/ turns JSON into it.
 struct ReconstructOptions {

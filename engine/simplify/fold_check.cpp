@@ -34,7 +34,7 @@ struct Bounds {
   }
   bool meet(const Bounds& other) const {
     bool meet = true;
-    for (int axis = 0; axis < 3; ++axis) meet &= (low[axis] <= other.high[axis]) & (other.low[axis] <= high[axis]);
+    for (int axis = 0; axis < 3; ++axis) meet = meet && low[axis] <= other.high[axis] && other.low[axis] <= high[axis];
     return meet;
   }
 };

@@ -91,13 +91,39 @@ void expect_one_hash(const BrickedVolume& volume, const ReconstructOptions& opti
 TEST(SameBytes, OfTheSyntheticSurveyWithItsHoles) {
   const auto volume = synthetic_volume({70, 90, 66});
   expect_one_hash(*volume, {.range = {0.6f, kInfinity}},
-                  "66420a3575da86f94c74bff54fdac31d8d373edbc75351f7914338bb62716e15");
+                  "9e01b184062785dfe098f3e46f46617e9ce669f2fdb05f17bfa3b699d1fb95c7");
 }
 
 TEST(SameBytes, OfABandWithoutCapInTheSampledMode) {
   const auto volume = synthetic_volume({70, 90, 66});
   expect_one_hash(*volume, {.range = {0.2f, 0.5f}, .mode = BodyMode::sampled, .cap = false},
-                  "9ebbba1617c1daabea497911bae9ca71afb41d867d373bd6964099a61c3bcd7a");
+                  "426ecb049b0886387d6a2b141e208c2b6888c5f5f1947a98938b16faf04bd837");
+}
+
+TEST(SameBytes, OfFilledSamplesAndWhatVerticesCarry) {
+  const auto volume = synthetic_volume({70, 90, 66});
+  const ReconstructOptions linear{.range = {0.6f, kInfinity},
+                                  .fill = {.method = FillMethod::linear},
+                                  .attributes = {.body = true},
+                                  .normals = true};
+  expect_one_hash(*volume, linear, "3b87ca6ca1e580ded44a97761c70811aaab0c04001a8ab5d1c50277a3a7b8e79");
+  for (const auto& [fill, golden] : {
+           std::pair{FillOptions{.method = FillMethod::rbf},
+                     "7f04d7ac3c3106c28453b1092eb09ae0b311772f480e0974e316d91aee55e0d8"},
+           std::pair{FillOptions{.method = FillMethod::rbf, .kernel = RbfKernel::inverse_distance},
+                     "3c5365e08595f6975da743f66acf170a731df1baafb159fb620aa3aadf031b20"},
+       }) {
+    const ReconstructOptions rbf{.range = {0.6f, kInfinity}, .fill = fill};
+    for (const int threads : {1, 8}) expect_hash(*volume, rbf, threads, golden);
+  }
+}
+
+TEST(SameBytes, OfLevelsByRandomChoicesThatShareVertices) {
+  const auto volume = synthetic_volume({70, 90, 66});
+  expect_one_hash(
+      *volume,
+      {.range = {0.6f, kInfinity}, .strategy = Strategy::multiple_choice, .placement = Placement::subset, .seed = 7},
+      "6002b5407a44fdc23c692c38e5c422c2c9e3c023d447d4f441025bf31b3c2d9e");
 }
 
 TEST(SameBytes, OfARealSurvey) {
@@ -109,7 +135,7 @@ TEST(SameBytes, OfARealSurvey) {
   const auto imported = import_volume(**source, {}, std::nullopt, progress);
   ASSERT_TRUE(imported) << imported.error().message;
   expect_one_hash(*imported->samples, {.range = {0.5f, kInfinity}},
-                  "3adb2cfddf3411a44ba9daffc2756015176df9be4b9e036292053c52718117fe");
+                  "ba7e128001710747d08ba3515b5ef4628155321dee41c8c5925491862554d002");
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ class StreamBuffer {
   }
 
   std::ostream& stream_;
-  std::array<char, 64 * 1024> buffer_;
+  std::array<char, 65536> buffer_;
   std::size_t used_ = 0;
   std::size_t sent_ = 0;
 };

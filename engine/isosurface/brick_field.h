@@ -73,7 +73,7 @@ class BrickField {
     if (first > last) return 0;
     return (~std::uint64_t{0} >> (63 - last)) & (~std::uint64_t{0} << first);
   }
-  const RowMasks& row(int a, int b) const { return masks_[static_cast<std::size_t>(a * kBrickSamples + b)]; }
+  const RowMasks& row(int a, int b) const { return masks_[static_cast<std::size_t>(a) * kBrickSamples + b]; }
   std::uint64_t edges_in_region(int axis) const { return axis == 2 ? cells_in_region() : nodes_in_region(); }
 
   const BrickedVolume& volume_;

@@ -45,7 +45,7 @@ class BrickVertices {
     std::array<std::int32_t, kPlane> node;
   };
 
-  static std::size_t place(int b, int c) { return static_cast<std::size_t>(b * kBrickSamples + c); }
+  static std::size_t place(int b, int c) { return static_cast<std::size_t>(b) * kBrickSamples + c; }
   PlaneNumbers& plane(int a) { return (*planes_)[a & 1]; }
   const PlaneNumbers& plane(int a) const { return (*planes_)[a & 1]; }
 

@@ -4,16 +4,19 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "engine/missing/steered_energy.h"
 #include "engine/missing/steered_paths.h"
+#include "engine/missing/thin_plate.h"
 #include "engine/structure/dips.h"
 #include "engine/structure/sample_scale.h"
 
 namespace geosis {
 namespace {
 
+constexpr std::int32_t kLeastSamples = 4;  // of a trace: cubics go through so many along it
 constexpr double kLeastPlanarity = 0.5;
 constexpr float kFirstWeight = 0.003f;    // of the first guess in the dips
 constexpr float kRepeatedWeight = 0.02f;  // of the filled samples in the dips, the second time
@@ -166,6 +169,12 @@ bool wants_steering(const GapBox& gap, FillSteering steering, const Progress& pr
 
 void fill_steered_plate(GapBox& gap, const Vec3d& step_lengths, const ThinPlateOptions& options,
                         const Progress& progress) {
+  if (gap.samples.shape.samples < kLeastSamples) {
+    GapBox level = gap;
+    fill_thin_plate(level, step_lengths, options, progress);
+    if (!progress.cancelled()) gap = std::move(level);
+    return;
+  }
   SteeredFill fill(gap, step_lengths, options, progress);
   if (fill.fill(kFirstWeight, true, kFirstTolerance * options.tolerance) &&
       fill.fill(kRepeatedWeight, false, kSecondTolerance * options.tolerance)) {

@@ -30,7 +30,8 @@ bool wants_steering(const GapBox& gap, FillSteering steering, const Progress& pr
 /// one.
 ///
 /// gap           on entry wanted nodes hold a first guess; it stands in for dips and values that nothing around tells.
-///               Known nodes keep every bit. A cancelled call leaves the gap as it was.
+///               Known nodes keep every bit. Traces of fewer than four samples tell no dips: they are filled as
+///               fill_thin_plate does. A cancelled call leaves the gap as it was.
 /// step_lengths  of the three axes on the level, above zero; only their ratios matter.
 /// options       the solver stops at ten times the tolerance: further on the plate bends to errors of the dips.
 /// result        finite, in [options.low, options.high]; the same on any machine.

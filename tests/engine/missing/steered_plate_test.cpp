@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/missing/thin_plate.h"
 #include "tests/engine/missing/dense_plate.h"
 #include "tests/support/random.h"
 
@@ -187,6 +188,18 @@ TEST(SteeredPlate, FillsTheRoughestSamplesWithFiniteOnes) {
     }
     const GapBox found = filled(gap);
     for (std::size_t n = 0; n < found.state.size(); ++n) ASSERT_TRUE(std::isfinite(found.samples.value[n]));
+  }
+}
+
+TEST(SteeredPlate, FillsTracesTooShortForDipsAsTheLevelPlate) {
+  test::Random random(test::test_seed(12));
+  const Field noise = [&](int, int, int) { return random.between(-1, 1); };
+  for (const int samples : {1, 2, 3}) {
+    GapBox gap = gap_in({6, 7, samples}, noise, {{0, 0, 0}, {-1, -1, -1}});
+    for (NodeState& state : gap.state) state = random.integer(0, 2) == 0 ? NodeState::wanted : NodeState::known;
+    GapBox level = gap;
+    fill_thin_plate(level, kSteps, kAnyValue, NoProgress());
+    EXPECT_EQ(filled(gap).samples.value, level.samples.value) << samples << " samples";
   }
 }
 

@@ -1,13 +1,14 @@
 import { describeBody, toggled } from '../core/bodies.js';
 import { COLOURINGS, colouringFor, colouringsOf, swatchColour } from '../core/colours.js';
 import { idle } from '../core/extraction_state.js';
-import { boundsOfBody, enlarged } from '../core/mesh.js';
+import { boundsOfBody, enlarged, longestSide } from '../core/mesh.js';
 import { LevelView } from '../three/level_view.js';
 import { BodyBox } from '../three/survey_box.js';
 import { BodiesSection } from './bodies_section.js';
 
-/** Shortest side of the box around a body, as a share of the survey's extent. */
+/** Shortest side of the box around a body, as a share of the survey's extent; a body this much larger needs none. */
 const LEAST_BOX = 0.02;
+const NEEDS_NO_BOX = 20;
 
 /**
  * How the surface looks: its colours, and the body that is singled out in the view and in the table.
@@ -98,6 +99,7 @@ export class Appearance {
   #placeBox() {
     const bounds = this.#selected === null ? null : boundsOfBody(this.#level.parts, this.#selected);
     this.#box.place(bounds && enlarged(bounds, this.#leastBox));
+    if (bounds && longestSide(bounds) > NEEDS_NO_BOX * this.#leastBox) this.#box.visible = false;
   }
 
   #recolour() {

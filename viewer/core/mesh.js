@@ -86,3 +86,7 @@ export function enlarged({ low, high }, least) {
   const missing = low.map((end, axis) => Math.max(0, least - (high[axis] - end)) / 2);
   return { low: low.map((end, axis) => end - missing[axis]), high: high.map((end, axis) => end + missing[axis]) };
 }
+
+export function longestSide({ low, high }) {
+  return Math.max(...high.map((end, axis) => end - low[axis]));
+}

@@ -9,7 +9,7 @@ import {
   bodiesCame, bodiesFailed, describe as sentenceOf, describeBodies, idle, manifestCame, progressed, started,
 } from '../core/extraction_state.js';
 import { formatAmplitude, formatVolume } from '../core/format.js';
-import { bodyLast, boundsOfBody, enlarged } from '../core/mesh.js';
+import { bodyLast, boundsOfBody, enlarged, longestSide } from '../core/mesh.js';
 import { choicesFromAddress, choicesToAddress, hasMissing, noChoices, parseMinVoxels, requestOf } from '../core/request.js';
 import { colourDifference, luminanceOf, VISIONS } from './colour_vision.mjs';
 
@@ -229,5 +229,6 @@ describe('one body of a mesh', () => {
     assert.deepEqual(enlarged(bounds, 10), { low: [7, 8, 9], high: [17, 18, 19] });
     assert.deepEqual(enlarged(bounds, 1), bounds);
     assert.equal(boundsOfBody([{ positions, body }], 1), null);
+    assert.equal(longestSide({ low: [0, 0, 0], high: [1, 5, 2] }), 5);
   });
 });

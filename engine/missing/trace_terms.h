@@ -51,7 +51,7 @@ class TraceTerms {
 
   /// minus and middle: what becomes of the factors -1 and -2 in the terms.
   void collect(float minus, float middle);
-  static std::size_t place(std::int32_t k) { return static_cast<std::size_t>(k + 1); }
+  static std::size_t place(std::int32_t k) { return static_cast<std::size_t>(k) + 1; }
 
   std::int32_t samples_, first_ = 0, end_ = 0, reached_ = 0;
   std::array<Taps, neighbours> taps_;

@@ -16,12 +16,13 @@ namespace {
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr float kMax = std::numeric_limits<float>::max();
 
-void expect_sound_levels(const ScalarField& field, IsoRange range) {
+void expect_sound_levels(const ScalarField& field, IsoRange range, const FillOptions& fill = {}) {
   const auto volume = make_bricked_volume(field.shape, field.samples);
   for (const BodyMode mode : {BodyMode::exact, BodyMode::sampled}) {
     NoProgress progress;
     const auto result =
-        reconstruct(*volume, AffineGeometry(), {.range = range, .mode = mode, .ratios = {1, 0.25}}, progress);
+        reconstruct({*volume, AffineGeometry()},
+                    {.range = range, .mode = mode, .fill = fill, .levels = by_ratio({1, 0.25})}, progress);
     ASSERT_TRUE(result) << result.error().message;
     for (const ReconstructedLevel& level : result->levels) {
       EXPECT_TRUE(level.topology.manifold);
@@ -61,6 +62,17 @@ TEST(WholeWay, SmallestAndLargestSamples) {
   expect_sound_levels(noise(random, 1e-40f), {-2e-41f, 3e-41f});
   expect_sound_levels(noise(random, kMax), {-0.3f * kMax, 0.4f * kMax});
   expect_sound_levels(noise(random, kMax), {-kMax, kMax});
+}
+
+TEST(WholeWay, SmallestAndLargestSamplesWithHoles) {
+  Random random(test_seed(23));
+  for (const float scale : {1e-40f, 1.0f, kMax}) {
+    const ScalarField field = with_holes(noise(random, scale), random, 0.2);
+    for (const FillOptions& fill : {FillOptions{}, FillOptions{FillMethod::linear}, FillOptions{FillMethod::rbf},
+                                    FillOptions{FillMethod::rbf, RbfKernel::polyharmonic, FillSteering::on},
+                                    FillOptions{FillMethod::rbf, RbfKernel::inverse_distance}})
+      expect_sound_levels(field, {-0.3f * scale, 0.4f * scale}, fill);
+  }
 }
 
 }  // namespace

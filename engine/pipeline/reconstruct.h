@@ -63,7 +63,7 @@ struct ReconstructOptions {
   std::optional<std::string> attribute_volume = std::nullopt;  ///< id of the volume that `value` is of
   std::optional<int> position_bits = std::nullopt;             ///< unset = chosen so that topology survives
   std::optional<int> speed = std::nullopt;                     ///< unset = 7
-  bool normals = false;                                        ///< at the vertices, from the field\'s gradient
+  bool normals = false;                                        ///< at the vertices, from the field's gradient
   int threads = 1;
 };
 

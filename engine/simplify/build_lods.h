@@ -13,7 +13,7 @@
 
 namespace geosis {
 
-/// Which small closed components to take out of a level; those that satisfy one of the two go.
+/// Which small closed components to take out of a level; those that satisfy one of the two go, except the largest.
 struct DropSpecks {
   double max_voxels = 0;  ///< enclosed volume on M0, of bodies and cavities alike
   double max_error =

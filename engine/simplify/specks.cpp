@@ -44,9 +44,10 @@ Specks::Specks(const IndexedMesh& m0) : components_(find_components(m0)) {
 
 bool Specks::drop(const DropSpecks& limits) {
   const std::int64_t before = dropped_count_;
+  const auto largest = std::ranges::max_element(sizes_, {}, [](const Size& size) { return std::abs(size.volume); });
   for (std::size_t i = 0; i < sizes_.size(); ++i) {
     const Size& size = sizes_[i];
-    if (dropped_[i] || !size.is_closed) continue;
+    if (dropped_[i] || !size.is_closed || &size == &*largest) continue;
     const bool small_volume = limits.max_voxels > 0 && std::abs(size.volume) / 6 <= limits.max_voxels;
     const bool small_extent = limits.max_error > 0 && norm(to_double(size.high - size.low)) / 2 <= limits.max_error;
     dropped_[i] = small_volume || small_extent;

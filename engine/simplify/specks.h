@@ -15,7 +15,8 @@ class Specks {
   /// cost   O(triangles); 8 bytes a vertex.
   explicit Specks(const IndexedMesh& m0);
 
-  /// Drops what is small enough; returns whether that is anything new.
+  /// Drops what is small enough, but never the largest component: no level is empty. Returns whether that is anything
+  /// new.
   bool drop(const DropSpecks& limits);
 
   bool is_dropped(std::int32_t vertex_of_m0) const { return dropped_[components_.of_vertex[vertex_of_m0]]; }

@@ -195,6 +195,14 @@ TEST(LevelTargets, OpenComponentsAreNoSpecks) {
   EXPECT_EQ(lods(m0, {.levels = {{.ratio = 1, .drop = {100, 100}}}}).levels[0].mesh.triangles.size(), 1u);
 }
 
+TEST(LevelTargets, TheLargestSpeckStays) {
+  const IndexedMesh m0 = ball_among_specks();
+  const LodHierarchy hierarchy = lods(m0, {.levels = {{.ratio = 1}, {.ratio = 0.3, .drop = {1e9, 1e9}}}});
+  EXPECT_EQ(find_components(hierarchy.levels[1].mesh).count, 1);
+  EXPECT_EQ(hierarchy.levels[1].dropped_components, 18);
+  EXPECT_GT(hierarchy.levels[1].mesh.triangles.size(), 8u);
+}
+
 TEST(LevelTargets, AmbiguousOnesAreRefused) {
   NoProgress progress;
   const IndexedMesh m0 = gyroid_mesh();

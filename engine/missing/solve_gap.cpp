@@ -30,8 +30,8 @@ ThinPlateOptions clamped_to_samples(const BrickedVolume& volume) {
   return options;
 }
 
-/// Gaps along whose surroundings the plate may be steered. Automatic: beyond the reach of the dips, which flow some 20
-/// traces into a gap from each side, steering costs ten times the plain plate and guesses no better.
+/// Gaps along whose surroundings the plate may be steered. Automatic: dips are smoothed over a few traces, so the
+/// middle of much wider gaps hears of none, and steering costs ten times the plain plate.
 WideGaps steerable(FillSteering steer) {
   WideGaps wide;
   wide.margin = {kSteeringMarginTraces, kSteeringMarginTraces, kSteeringMarginSamples};

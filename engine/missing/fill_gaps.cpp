@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -20,15 +19,6 @@ namespace {
 // Boxes take up to 60 bytes a node while they are solved; so many at once stay below half a gigabyte.
 constexpr int kSmallAtOnce = 6, kBigAtOnce = 2;
 
-ValueRange range_of(const BrickedVolume& volume) {
-  ValueRange all{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
-  for (std::size_t brick = 0; brick < volume.brick_count(); ++brick) {
-    const ValueRange range = volume.summary(brick).range;
-    all = {std::min(all.min, range.min), std::max(all.max, range.max)};
-  }
-  return all;
-}
-
 /// The nodes that two boxes share; empty if first is beyond last on an axis.
 GridBox common(const GridBox& a, const GridBox& b) {
   GridBox both;
@@ -43,7 +33,7 @@ GridBox common(const GridBox& a, const GridBox& b) {
 class Keeper {
  public:
   Keeper(const BrickedVolume& volume, FillWriter& writer)
-      : layout_(volume.shape()), range_(range_of(volume)), writer_(writer) {}
+      : layout_(volume.shape()), range_(value_range(volume)), writer_(writer) {}
 
   void keep(const GapBox& gap, const GridBox& core) {
     std::int32_t first[3], last[3];

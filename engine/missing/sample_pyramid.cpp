@@ -192,16 +192,6 @@ void join_cells(const SamplePyramid::Level& fine, Vec3d steps, SamplePyramid::Le
       }
 }
 
-ValueRange range_of(const BrickedVolume& volume) {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  ValueRange range{kInfinity, -kInfinity};
-  for (std::size_t brick = 0; brick < volume.brick_count(); ++brick) {
-    const ValueRange one = volume.summary(brick).range;
-    range = {std::min(range.min, one.min), std::max(range.max, one.max)};
-  }
-  return range;
-}
-
 double scale_for(ValueRange range) {
   if (range.min > range.max) return 1;
   const double largest = std::max(std::abs(static_cast<double>(range.min)), std::abs(static_cast<double>(range.max)));
@@ -221,7 +211,7 @@ Result<SamplePyramid> SamplePyramid::build(const BrickedVolume& volume, Vec3d st
   SamplePyramid pyramid;
   const double shortest = std::min({step_lengths.x, step_lengths.y, step_lengths.z});
   pyramid.steps_ = {step_lengths.x / shortest, step_lengths.y / shortest, step_lengths.z / shortest};
-  pyramid.range_ = range_of(volume);
+  pyramid.range_ = value_range(volume);
   pyramid.scale_ = scale_for(pyramid.range_);
 
   const GridShape shape = volume.shape();

@@ -1,6 +1,5 @@
 #include "engine/missing/solve_gap.h"
 
-#include <algorithm>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -18,16 +17,8 @@ Error cancelled() {
 
 /// Nothing is filled with what no sample has: a plate can swing far beyond its rim.
 ThinPlateOptions clamped_to_samples(const BrickedVolume& volume) {
-  ThinPlateOptions options;
-  ValueRange range{std::numeric_limits<float>::max(), std::numeric_limits<float>::lowest()};
-  for (std::size_t brick = 0; brick < volume.brick_count(); ++brick) {
-    const BrickSummary summary = volume.summary(brick);
-    if (summary.all_missing) continue;
-    range = {std::min(range.min, summary.range.min), std::max(range.max, summary.range.max)};
-  }
-  options.low = range.min;
-  options.high = range.max;
-  return options;
+  const ValueRange range = value_range(volume);
+  return {.low = range.min, .high = range.max};
 }
 
 /// Gaps along whose surroundings the plate may be steered. Automatic: dips are smoothed over a few traces, so the

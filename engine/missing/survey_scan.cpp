@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstring>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -21,11 +20,7 @@ constexpr double kShare = 0.3;  ///< of the stage
 constexpr std::size_t kTracesForSteps = 16'384;
 
 double middle_of_range(const BrickedVolume& volume) {
-  ValueRange all{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
-  for (std::size_t brick = 0; brick < volume.brick_count(); ++brick) {
-    const ValueRange range = volume.summary(brick).range;
-    all = {std::min(all.min, range.min), std::max(all.max, range.max)};
-  }
+  const ValueRange all = value_range(volume);
   return all.min <= all.max ? (double{all.min} + double{all.max}) / 2 : 0;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <span>
 
@@ -67,6 +69,16 @@ inline bool has_missing(const BrickedVolume& volume) {
     if (volume.summary(brick).has_missing) return true;
   }
   return false;
+}
+
+/// Smallest and largest valid sample of the volume, by its index alone.
+inline ValueRange value_range(const BrickedVolume& volume) {
+  ValueRange all{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
+  for (std::size_t brick = 0; brick < volume.brick_count(); ++brick) {
+    const ValueRange range = volume.summary(brick).range;
+    all = {std::min(all.min, range.min), std::max(all.max, range.max)};
+  }
+  return all;
 }
 
 }  // namespace geosis

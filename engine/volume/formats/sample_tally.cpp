@@ -1,22 +1,8 @@
 #include "engine/volume/formats/sample_tally.h"
 
-#include <algorithm>
-#include <limits>
 #include <string>
 
 namespace geosis {
-namespace {
-
-ValueRange range_of(const BrickedVolume& volume) {
-  ValueRange range{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
-  for (std::size_t brick = 0; brick < volume.brick_count(); ++brick) {
-    const ValueRange part = volume.summary(brick).range;
-    range = {std::min(range.min, part.min), std::max(range.max, part.max)};
-  }
-  return range;
-}
-
-}  // namespace
 
 void SampleTally::add_trace(std::int64_t samples, std::int64_t missing) {
   if (missing == 0) return;
@@ -27,7 +13,7 @@ void SampleTally::add_trace(std::int64_t samples, std::int64_t missing) {
 void SampleTally::describe(const BrickedVolume& volume, VolumeDescription& description) const {
   description.missing_samples = missing_;
   description.missing_traces = missing_traces_;
-  description.value_range = range_of(volume);
+  description.value_range = value_range(volume);
   if (missing_ == volume.shape().count())
     description.warnings.push_back({"no_valid_samples", "every sample is missing"});
   if (infinite_ > 0)

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <string_view>
 
 #include "engine/base/result.h"
 
@@ -29,6 +30,9 @@ class ByteStream {
   virtual Result<Pulled> pull(std::span<std::byte> into) = 0;
   /// bell   called from any thread after a pull that said wait, when there may be more. Replaces an earlier one.
   virtual void on_ready(std::function<void()> bell) = 0;
+  /// What may be said from time to time while nothing is there, so that nobody on the way takes the connection for
+  /// dead.
+  virtual std::string_view idle_text() const { return {}; }
 };
 
 }  // namespace geosis::server

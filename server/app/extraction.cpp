@@ -56,6 +56,11 @@ void Extraction::wait_for(std::chrono::milliseconds time) const {
   if (job) job->wait_for(time);
 }
 
+bool Extraction::has_ended() const {
+  const std::lock_guard lock(mutex_);
+  return manifest_ || cancelled_ || (job_ && is_final(job_->status().state));
+}
+
 void Extraction::set_job(std::shared_ptr<Job> job) {
   const std::lock_guard lock(mutex_);
   job_ = std::move(job);

@@ -48,6 +48,8 @@ class Extraction {
   /// Rings after every change until the subscription ends; at once never. No bell for what is final already.
   Job::Subscription subscribe(std::function<void()> bell);
   void wait_for(std::chrono::milliseconds time) const;
+  /// Done, failed or cancelled. Quicker than a snapshot.
+  bool has_ended() const;
 
   // For whoever computes it.
   void set_job(std::shared_ptr<Job> job);

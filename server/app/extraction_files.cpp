@@ -18,6 +18,13 @@ Error not_done(const std::string& id, JobState state) {
   return {ErrorCode::already_exists, "extraction " + id + ": it is " + name_of(state) + ", not done"};
 }
 
+Result<void> wait_until_made(const Result<std::shared_ptr<Job>>& job) {
+  if (!job) return job.error();
+  while (!(*job)->wait_for(std::chrono::hours(1))) {
+  }
+  return (*job)->outcome();
+}
+
 LevelFile bytes_file(std::vector<std::byte> bytes) {
   LevelFile file{.sha256 = sha256_hex(bytes), .bytes = bytes.size(), .stream = nullptr, .transform = {}};
   file.stream = bytes_stream(std::move(bytes));
@@ -26,14 +33,20 @@ LevelFile bytes_file(std::vector<std::byte> bytes) {
 
 }  // namespace
 
+/// The extraction, if it is done.
+Result<std::shared_ptr<Extraction>> Extractions::find_done(const std::string& id) {
+  auto extraction = find(id);
+  if (!extraction) return extraction;
+  const JobState state = (*extraction)->snapshot().state;
+  if (state != JobState::done) return not_done(id, state);
+  return extraction;
+}
+
 Result<LevelFile> Extractions::bodies(const std::string& id) {
-  const auto extraction = find(id);
-  if (!extraction) return extraction.error();
-  const Extraction::Snapshot now = (*extraction)->snapshot();
-  if (!now.manifest) return not_done(id, now.state);
+  if (auto done = find_done(id); !done) return std::move(done).error();
   auto bytes = store_.get(key(id, kBodies));
   if (!bytes && bytes.error().code == ErrorCode::not_found) {
-    if (auto made = make_bodies((*extraction)->identity()); !made) return std::move(made).error();
+    if (auto made = wait_until_made(begin_bodies(id)); !made) return std::move(made).error();
     bytes = store_.get(key(id, kBodies));
   }
   if (!bytes) return std::move(bytes).error();
@@ -45,16 +58,21 @@ bool Extractions::are_bodies_made(const std::string& id) {
   return made && *made;
 }
 
-Result<void> Extractions::make_bodies(const Extraction::Identity& identity) {
-  return run_and_wait([&](Job& running) -> Result<void> {
-    ExtractionTimings unread;
-    const auto opened = open(identity, running, unread);
-    if (!opened) return opened.error();
-    const ExtractionInput input = opened->input();
-    const auto bodies = describe_bodies(reconstruct_input(input, opened->options), opened->options, running);
-    if (!bodies) return bodies.error();
-    return write_document(key(identity.id, kBodies), bodies_document(input.volume, opened->options, *bodies));
-  });
+Result<std::shared_ptr<Job>> Extractions::begin_bodies(const std::string& id) {
+  const auto extraction = find_done(id);
+  if (!extraction) return extraction.error();
+  return begin(key(id, kBodies),
+               [this, extraction = *extraction](Job& running) { return make_bodies(extraction->identity(), running); });
+}
+
+Result<void> Extractions::make_bodies(const Extraction::Identity& identity, Job& running) {
+  ExtractionTimings unread;
+  const auto opened = open(identity, running, unread);
+  if (!opened) return opened.error();
+  const ExtractionInput input = opened->input();
+  const auto bodies = describe_bodies(reconstruct_input(input, opened->options), opened->options, running);
+  if (!bodies) return bodies.error();
+  return write_document(key(identity.id, kBodies), bodies_document(input.volume, opened->options, *bodies));
 }
 
 Result<LevelFile> Extractions::part(const std::string& id, int level, int part) {
@@ -100,30 +118,37 @@ bool Extractions::is_level_made(const std::string& id, int level, LevelFormat fo
   return format == LevelFormat::drc && more && !*more;  // one part is the whole level
 }
 
-Result<LevelFile> Extractions::level(const std::string& id, int level, LevelFormat format) {
+/// The manifest of an extraction that is done and has this level.
+Result<Json> Extractions::manifest_with_level(const std::string& id, int level) {
   const auto extraction = find(id);
   if (!extraction) return extraction.error();
-  const Extraction::Snapshot now = (*extraction)->snapshot();
+  Extraction::Snapshot now = (*extraction)->snapshot();
   if (!now.manifest) return not_done(id, now.state);
-  const Json& levels = now.manifest->at("levels");
-  if (level < 0 || level >= static_cast<int>(levels.size())) {
-    return Error{ErrorCode::not_found, "extraction " + id + ": no level " + std::to_string(level) + "; it has " +
-                                           std::to_string(levels.size())};
+  const std::size_t levels = now.manifest->at("levels").size();
+  if (level < 0 || level >= static_cast<int>(levels)) {
+    return Error{ErrorCode::not_found,
+                 "extraction " + id + ": no level " + std::to_string(level) + "; it has " + std::to_string(levels)};
   }
-  auto file = format == LevelFormat::drc && levels.at(static_cast<std::size_t>(level)).at("parts").size() == 1
-                  ? part(id, level, 0)
-                  : whole_level(id, level, format, *now.manifest);
-  if (file && format == LevelFormat::drc) file->transform = transform_text(now.manifest->at("transform"));
+  return *std::move(now.manifest);
+}
+
+Result<LevelFile> Extractions::level(const std::string& id, int level, LevelFormat format) {
+  const auto manifest = manifest_with_level(id, level);
+  if (!manifest) return manifest.error();
+  const Json& entry = manifest->at("levels").at(static_cast<std::size_t>(level));
+  auto file =
+      format == LevelFormat::drc && entry.at("parts").size() == 1 ? part(id, level, 0) : whole_level(id, level, format);
+  if (file && format == LevelFormat::drc) file->transform = transform_text(manifest->at("transform"));
   return file;
 }
 
 /// The stored whole file; made first if nobody has asked for it yet.
-Result<LevelFile> Extractions::whole_level(const std::string& id, int level, LevelFormat format, const Json& manifest) {
+Result<LevelFile> Extractions::whole_level(const std::string& id, int level, LevelFormat format) {
   const std::string name = level_file_name(level, format);
   auto description = read_document(id, (name + ".json").c_str());
   if (!description) {
     if (description.error().code != ErrorCode::not_found) return std::move(description).error();
-    if (auto made = make_level_file(id, level, format, manifest); !made) return std::move(made).error();
+    if (auto made = wait_until_made(begin_level(id, level, format)); !made) return std::move(made).error();
     description = read_document(id, (name + ".json").c_str());
     if (!description) return std::move(description).error();
   }
@@ -137,27 +162,34 @@ Result<LevelFile> Extractions::whole_level(const std::string& id, int level, Lev
                    .transform = {}};
 }
 
-Result<void> Extractions::make_level_file(const std::string& id, int level, LevelFormat format, const Json& manifest) {
-  return run_and_wait([&](Job& running) -> Result<void> {
-    auto staged = store_.stage();
-    if (!staged) return std::move(staged).error();
-    auto description = export_level((*staged)->path(), manifest, level, format, part_reader(id), threads_, running);
-    if (!description) return std::move(description).error();
-    const std::string name = level_file_name(level, format);
-    if (auto done = store_.commit(*std::move(staged), key(id, name)); !done) return done;
-    return write_document(key(id, name + ".json"), *description);
-  });
+Result<std::shared_ptr<Job>> Extractions::begin_level(const std::string& id, int level, LevelFormat format) {
+  auto manifest = manifest_with_level(id, level);
+  if (!manifest) return std::move(manifest).error();
+  return begin(key(id, level_file_name(level, format)),
+               [this, id, level, format, manifest = *std::move(manifest)](Job& running) {
+                 return make_level_file(id, level, format, manifest, running);
+               });
 }
 
-/// On a worker, as all that computes; the caller waits. Two at once make the same file twice, which does no harm.
-Result<void> Extractions::run_and_wait(const std::function<Result<void>(Job&)>& work) {
-  auto job = queue_.submit(Priority::interactive, work);
-  if (!job) return std::move(job).error();
-  while (!(*job)->wait_for(std::chrono::hours(1))) {
-  }
-  const JobStatus status = (*job)->status();
-  return status.state == JobState::done ? Result<void>{}
-                                        : status.error.value_or(Error{ErrorCode::cancelled, "cancelled"});
+Result<void> Extractions::make_level_file(const std::string& id, int level, LevelFormat format, const Json& manifest,
+                                          Job& running) {
+  auto staged = store_.stage();
+  if (!staged) return std::move(staged).error();
+  auto description = export_level((*staged)->path(), manifest, level, format, part_reader(id), threads_, running);
+  if (!description) return std::move(description).error();
+  const std::string name = level_file_name(level, format);
+  if (auto done = store_.commit(*std::move(staged), key(id, name)); !done) return done;
+  return write_document(key(id, name + ".json"), *description);
+}
+
+/// On a worker, as all that computes. Who asks for what is being made waits for the same job.
+Result<std::shared_ptr<Job>> Extractions::begin(const BlobKey& made, JobQueue::Work work) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(making_, [](const auto& entry) { return entry.second.expired(); });
+  if (const auto running = making_[made].lock(); running && !is_final(running->status().state)) return running;
+  auto job = queue_.submit(Priority::interactive, std::move(work));
+  if (job) making_[made] = *job;
+  return job;
 }
 
 }  // namespace geosis::server

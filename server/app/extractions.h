@@ -73,13 +73,17 @@ class Extractions {
 
   /// False when level() would have to make the file first.
   bool is_level_made(const std::string& id, int level, LevelFormat format);
-  /// Level k, whole, in one file. errors: not_found; already_exists: it is not done.
+  /// Begins to make it; equal calls share one job. errors: not_found; already_exists: it is not done; unavailable.
+  Result<std::shared_ptr<Job>> begin_level(const std::string& id, int level, LevelFormat format);
+  /// Level k, whole, in one file; made while the caller waits if it is not there. errors: as begin_level().
   Result<LevelFile> level(const std::string& id, int level, LevelFormat format);
   /// One encoded part; may be read as soon as its level is ready.
   Result<LevelFile> part(const std::string& id, int level, int part);
   /// False when bodies() would have to describe them first.
   bool are_bodies_made(const std::string& id);
-  /// The document of all bodies. errors: not_found; already_exists: the extraction is not done.
+  /// Begins to describe them, as begin_level() does.
+  Result<std::shared_ptr<Job>> begin_bodies(const std::string& id);
+  /// The document of all bodies, as level() gives it.
   Result<LevelFile> bodies(const std::string& id);
 
  private:
@@ -117,10 +121,13 @@ class Extractions {
                                                                     const VolumeSummary& volume);
   Result<std::shared_ptr<const FilledStoredVolume>> fill(std::shared_ptr<const StoredVolume> volume,
                                                          const ReconstructOptions& options, Progress& progress);
-  Result<LevelFile> whole_level(const std::string& id, int level, LevelFormat format, const Json& manifest);
-  Result<void> make_bodies(const Extraction::Identity& identity);
-  Result<void> run_and_wait(const std::function<Result<void>(Job&)>& work);
-  Result<void> make_level_file(const std::string& id, int level, LevelFormat format, const Json& manifest);
+  Result<std::shared_ptr<Extraction>> find_done(const std::string& id);
+  Result<Json> manifest_with_level(const std::string& id, int level);
+  Result<LevelFile> whole_level(const std::string& id, int level, LevelFormat format);
+  Result<void> make_bodies(const Extraction::Identity& identity, Job& running);
+  Result<void> make_level_file(const std::string& id, int level, LevelFormat format, const Json& manifest,
+                               Job& running);
+  Result<std::shared_ptr<Job>> begin(const BlobKey& made, JobQueue::Work work);
 
   BlobStore& store_;
   Volumes& volumes_;
@@ -131,6 +138,7 @@ class Extractions {
   Fills fills_;
   std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Entry>> entries_;  ///< recently used, by id
+  std::map<BlobKey, std::weak_ptr<Job>> making_;           ///< files that are made on request, by their key
 };
 
 }  // namespace geosis::server

@@ -126,6 +126,7 @@ class EventStream final : public ExtractionStream {
  public:
   EventStream(std::shared_ptr<Extraction> extraction, std::uint64_t after)
       : ExtractionStream(std::move(extraction)), told_(after) {}
+  std::string_view idle_text() const override { return ":\n\n"; }
 
  private:
   Result<Pulled::State> next_news(std::string& piece, const Extraction::Snapshot& now) override {
@@ -133,10 +134,11 @@ class EventStream final : public ExtractionStream {
     for (; told_ < now.levels.size(); ++told_) add_event(piece, "level", now.levels[told_], told_ + 1);
     if (is_final(now.state)) {
       ended_ = true;
+      const std::uint64_t id = now.levels.size() + 1;
       if (now.state == JobState::done)
-        add_event(piece, "done", resource_document(*extraction_), now.levels.size() + 1);
+        add_event(piece, "done", resource_document(*extraction_), id);
       else
-        add_event(piece, "failed", problem_document(now.error.value_or(Error{ErrorCode::cancelled, "cancelled"})));
+        add_event(piece, "failed", problem_document(now.error.value_or(Error{ErrorCode::cancelled, "cancelled"})), id);
       return Pulled::State::data;
     }
     const std::pair progress{now.stage, static_cast<int>(now.progress * 100)};
@@ -217,6 +219,11 @@ Result<std::unique_ptr<ByteStream>> file_stream(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) return Error{ErrorCode::not_found, "a stored file is gone"};
   return std::unique_ptr<ByteStream>(std::make_unique<FileStream>(std::move(file)));
+}
+
+bool knows_the_end(const Extraction& extraction, std::uint64_t after) {
+  if (after == 0 || !extraction.has_ended()) return false;
+  return after > extraction.snapshot().levels.size();
 }
 
 std::unique_ptr<ByteStream> event_stream(std::shared_ptr<Extraction> extraction, std::uint64_t after) {

@@ -23,6 +23,7 @@ Connection::Connection(std::uint64_t id, Descriptor socket, std::string peer, Co
       peer_(std::move(peer)),
       owner_(owner),
       deadline_(Clock::now() + owner.limits().head_deadline),
+      idle_since_(Clock::now()),
       rate_(owner.limits().bytes_per_second, owner.limits().rate_window) {}
 
 std::uint32_t Connection::interest() const {
@@ -33,6 +34,7 @@ std::uint32_t Connection::interest() const {
     case State::lingering:
       return EPOLLIN;
     case State::handling:
+    case State::suspended:
     case State::waiting:
       return departure;
     case State::writing:
@@ -48,8 +50,8 @@ void Connection::on_events(std::uint32_t events) {
   if (events & (EPOLLERR | EPOLLHUP)) return finish();
   if (events & EPOLLRDHUP) {
     is_half_closed_ = true;
-    // A small answer is still delivered; nobody is there for what a stream may bring later.
-    if (writer_ && writer_->has_stream()) return finish();
+    // A small answer is still delivered; nobody is there for what may come later.
+    if (suspended_ || (writer_ && writer_->has_stream())) return finish();
   }
   if (events & EPOLLIN) receive();
   if ((events & EPOLLOUT) && state_ == State::writing) write();
@@ -57,20 +59,28 @@ void Connection::on_events(std::uint32_t events) {
 
 void Connection::on_bell() {
   if (state_ == State::waiting) write();
+  if (state_ == State::suspended && suspended_->pending->is_ready()) resume();
 }
 
 void Connection::on_tick() {
   const auto now = Clock::now();
   if (state_ == State::writing && !judge_rate()) return finish();
+  if (state_ == State::suspended && (now >= suspended_->pending->deadline() || suspended_->pending->is_ready())) {
+    return resume();
+  }
+  if (state_ == State::waiting && now - quiet_since_ >= owner_.limits().quiet_time) {
+    quiet_since_ = now;
+    if (writer_->say_idle_text()) return write();
+  }
   const bool has_deadline =
       state_ == State::reading_head || state_ == State::reading_body || state_ == State::lingering;
   if (!has_deadline || now < deadline_) return;
-  const bool is_idle = state_ == State::reading_head && in_.empty();
-  if (is_idle || state_ == State::lingering) return finish();
+  if (is_idle() || state_ == State::lingering) return finish();
   refuse({408, "the request did not arrive in time"});
 }
 
 void Connection::on_drain() {
+  if (state_ == State::suspended && suspended_->pending->can_end_early()) return resume();
   if (state_ != State::reading_head) return;
   receive();  // what is already here is still answered
   if (state_ == State::reading_head && in_.empty()) finish();
@@ -177,6 +187,19 @@ void Connection::refuse(const Refusal& refusal) {
   answer(std::make_unique<ReplyWriter>(std::move(reply), ReplyForm{.is_head = false, .closes = true}));
 }
 
+void Connection::suspend(std::unique_ptr<Suspended> suspended) {
+  if (is_half_closed_) return finish();
+  suspended_ = std::move(suspended);
+  state_ = State::suspended;
+  suspended_->pending->on_ready(owner_.bell_of(*this));
+  on_bell();  // what came before the bell was hung up
+}
+
+void Connection::resume() {
+  state_ = State::handling;
+  owner_.resume(*this, std::move(suspended_));
+}
+
 void Connection::answer(std::unique_ptr<ReplyWriter> writer) {
   if (is_half_closed_ && writer->has_stream()) return finish();
   closes_ = closes_ || writer->closes();
@@ -202,6 +225,7 @@ void Connection::write() {
       return;
     case ReplyWriter::Outcome::waiting:
       state_ = State::waiting;
+      quiet_since_ = Clock::now();
       return;
     case ReplyWriter::Outcome::broken:
       return finish();
@@ -221,7 +245,8 @@ bool Connection::judge_rate() {
 void Connection::next_request() {
   const Limits& limits = owner_.limits();
   state_ = State::reading_head;
-  deadline_ = Clock::now() + (in_.empty() ? limits.idle_timeout : limits.head_deadline);
+  idle_since_ = Clock::now();
+  deadline_ = idle_since_ + (in_.empty() ? limits.idle_timeout : limits.head_deadline);
   if (!in_.empty()) advance();
 }
 
@@ -234,6 +259,7 @@ void Connection::linger() {
 
 void Connection::finish() {
   state_ = State::finished;
+  suspended_.reset();
   writer_.reset();
 }
 

@@ -14,6 +14,7 @@
 #include "server/http/limits.h"
 #include "server/http/rate_guard.h"
 #include "server/http/reply_writer.h"
+#include "server/http/suspended.h"
 
 namespace geosis::server::http {
 
@@ -33,6 +34,8 @@ class ConnectionOwner {
   virtual bool handle(Connection& connection, Router::Resolved resolved) = 0;
   /// The same with a body that is still to be read; until the answer comes the socket belongs to the upload's thread.
   virtual bool upload(Connection& connection, Head head, Router::Resolved resolved, std::string already) = 0;
+  /// The rest of a request that was suspended, on a handler's thread.
+  virtual void resume(Connection& connection, std::unique_ptr<Suspended> suspended) = 0;
   /// Calls on_bell() of this connection soon; rung from any thread, also when the connection is gone.
   virtual std::function<void()> bell_of(const Connection& connection) = 0;
 };
@@ -57,11 +60,16 @@ class Connection {
   void on_drain();
   /// Begins to write; what handle() and upload() lead to.
   void answer(std::unique_ptr<ReplyWriter> writer);
+  /// Waits for a pending answer.
+  void suspend(std::unique_ptr<Suspended> suspended);
   /// Breaks the socket while a thread reads an upload from it.
   void interrupt();
 
   /// The epoll events it waits for; 0 = none, not even failures.
   std::uint32_t interest() const;
+  /// Between two requests, with nothing of the next one here. since   when it became so.
+  bool is_idle() const { return state_ == State::reading_head && in_.empty(); }
+  Clock::time_point idle_since() const { return idle_since_; }
   bool is_finished() const { return state_ == State::finished; }
   bool is_uploading() const { return state_ == State::uploading; }
   /// The request's answer ends the connection.
@@ -73,6 +81,7 @@ class Connection {
     reading_body,  ///< of a small request
     handling,      ///< a handler's thread is at work
     uploading,     ///< an upload's thread is at work and owns the socket
+    suspended,     ///< the answer is pending
     writing,       ///< the socket is full, or others have their turn
     waiting,       ///< the reply's stream has nothing yet
     lingering,     ///< all is said; the peer may still be sending
@@ -86,6 +95,7 @@ class Connection {
   void begin_small_body(const Head& head);
   void begin_upload(Head head);
   void read_body();
+  void resume();
   void write();
   void next_request();
   void linger();
@@ -109,7 +119,9 @@ class Connection {
   bool is_half_closed_ = false;               ///< the peer sends no more
   std::optional<Router::Resolved> resolved_;  ///< of a request whose body is being read
   std::optional<BodyCollector> body_;
+  std::unique_ptr<Suspended> suspended_;
   std::unique_ptr<ReplyWriter> writer_;
+  Clock::time_point idle_since_, quiet_since_;
   std::optional<Clock::time_point> blocked_since_;
   std::uint64_t judged_bytes_ = 0;  ///< of the writer's, which the rate has counted
   RateGuard rate_;

@@ -55,6 +55,10 @@ Reply Dispatcher::run_upload(const Router::Resolved& resolved, BodyReader& body)
   return finish(resolved.request, guarded([&] { return (**handler)(resolved.request, body); }));
 }
 
+Reply Dispatcher::resume(const Request& request, PendingReply& pending) const {
+  return finish(request, guarded([&] { return pending.finish(); }));
+}
+
 Reply Dispatcher::refuse(const Request& request, const Refusal& refusal) const {
   return finish(request, refusal_reply(refusal));
 }
@@ -68,6 +72,7 @@ Reply Dispatcher::answer_without_handler(const Router::Resolved& resolved) const
 }
 
 Reply Dispatcher::finish(const Request& request, Reply reply) const {
+  if (reply.pending) return reply;
   apply_conditions(request, reply);
   if (request.method != "OPTIONS") apply_cors(cors_, request, reply);
   reply.headers.emplace_back("X-Request-Id", request.request_id);

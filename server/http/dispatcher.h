@@ -17,8 +17,10 @@ class Dispatcher {
   Router::Resolved resolve(const Head& head) const;
   bool is_upload(const Router::Resolved& resolved) const;
 
+  /// What is pending is not finished yet: resume() does that.
   Reply run(const Router::Resolved& resolved) const;
   Reply run_upload(const Router::Resolved& resolved, BodyReader& body) const;
+  Reply resume(const Request& request, PendingReply& pending) const;
   Reply refuse(const Request& request, const Refusal& refusal) const;
 
  private:

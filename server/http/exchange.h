@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -40,13 +41,34 @@ class BodyReader {
   virtual Result<std::size_t> read(std::span<std::byte> into) = 0;
 };
 
-/// An answer: a small body, or a stream that the front writes itself.
+struct Reply;
+
+/// An answer that is not there yet. It holds its client's connection, and no thread.
+///
+/// The loop's thread calls all but finish(). Destroyed before finish(): its client went away.
+class PendingReply {
+ public:
+  virtual ~PendingReply() = default;
+  /// bell   called from any thread when is_ready() may have become true; called once, before the first is_ready().
+  virtual void on_ready(std::function<void()> bell) = 0;
+  /// Quick: asked after every bell, and a few times a second.
+  virtual bool is_ready() const = 0;
+  /// When finish() is called, ready or not.
+  virtual std::chrono::steady_clock::time_point deadline() const = 0;
+  /// Whether finish() has a true answer at any time: then nobody waits for it when the server stops.
+  virtual bool can_end_early() const { return false; }
+  /// The answer; called once, by a handler's thread. It may be pending again.
+  virtual Reply finish() = 0;
+};
+
+/// An answer: a small body, a stream that the front writes itself, or one that comes later.
 struct Reply {
   int status = 200;
   std::vector<std::pair<std::string, std::string>> headers;  ///< without Content-Length and Connection
   std::string body;
-  std::unique_ptr<ByteStream> stream;   ///< instead of the body
-  std::optional<std::uint64_t> length;  ///< of the stream; unset = chunked
+  std::unique_ptr<ByteStream> stream;     ///< instead of the body
+  std::optional<std::uint64_t> length;    ///< of the stream; unset = chunked
+  std::unique_ptr<PendingReply> pending;  ///< instead of all else
 };
 
 using Handler = std::function<Reply(const Request&)>;

@@ -7,6 +7,7 @@
 #include <sys/socket.h>
 
 #include "server/http/error_reply.h"
+#include "server/http/reply_head.h"
 #include "server/http/upload_body.h"
 
 namespace geosis::server::http {
@@ -15,14 +16,26 @@ namespace {
 constexpr std::uint64_t kListenerKey = 0, kMailboxKey = 1, kFirstConnection = 2;
 constexpr std::chrono::milliseconds kTick{100};
 
-/// The reply of `run`, ready to be written; whatever happens there is one.
+/// What `run` answers, as a letter to the request's connection; whatever happens there is one.
 template <class Run>
-std::unique_ptr<ReplyWriter> written_reply(const ReplyForm& form, Run run) {
+Letter letter_with_answer(std::uint64_t connection, const Request& request, const ReplyForm& form, Run run) {
+  Letter letter{connection, nullptr, nullptr};
   try {
-    return std::make_unique<ReplyWriter>(run(), form);
+    Reply reply = run();
+    if (reply.pending) {
+      letter.suspended = std::make_unique<Suspended>(Suspended{request, form, std::move(reply.pending)});
+    } else {
+      letter.answer = std::make_unique<ReplyWriter>(std::move(reply), form);
+    }
   } catch (...) {
-    return std::make_unique<ReplyWriter>(refusal_reply({500, "an unexpected failure"}), form);
+    letter.answer = std::make_unique<ReplyWriter>(refusal_reply({500, "an unexpected failure"}), form);
   }
+  return letter;
+}
+
+std::string full_answer() {
+  const Reply reply = refusal_reply({503, "too many connections are open"});
+  return reply_head(reply, {.is_head = false, .closes = true}) + reply.body;
 }
 
 }  // namespace
@@ -88,29 +101,44 @@ void FrontLoop::accept_all() {
 }
 
 void FrontLoop::admit(Listener::Accepted accepted) {
-  std::size_t& of_peer = peers_[accepted.peer];
-  if (connections_.size() >= limits_.connections || of_peer >= limits_.connections_per_peer) {
-    constexpr std::string_view kFull =
-        "HTTP/1.1 503 Service Unavailable\r\nRetry-After: 1\r\nContent-Length: 0\r\nConnection: close\r\n\r\n";
-    ::send(accepted.socket.number(), kFull.data(), kFull.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
-    if (of_peer == 0) peers_.erase(accepted.peer);
+  if (!has_room_for(accepted.peer)) end_idlest(connections_.size() < limits_.connections ? &accepted.peer : nullptr);
+  if (!has_room_for(accepted.peer)) {
+    const std::string full = full_answer();
+    ::send(accepted.socket.number(), full.data(), full.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
     return;
   }
-  ++of_peer;
+  ++peers_[accepted.peer];
   const std::uint64_t id = next_id_++;
   ConnectionOwner& owner = *this;
   auto connection = std::make_unique<Connection>(id, std::move(accepted.socket), std::move(accepted.peer), owner);
   settle(*connections_.emplace(id, std::move(connection)).first->second);
 }
 
+bool FrontLoop::has_room_for(const std::string& peer) const {
+  const auto of_peer = peers_.find(peer);
+  return connections_.size() < limits_.connections &&
+         (of_peer == peers_.end() ? 0 : of_peer->second) < limits_.connections_per_peer;
+}
+
+void FrontLoop::end_idlest(const std::string* peer) {
+  Connection* idlest = nullptr;
+  for (const auto& [id, connection] : connections_) {
+    if (!connection->is_idle() || (peer && connection->peer() != *peer)) continue;
+    if (!idlest || connection->idle_since() < idlest->idle_since()) idlest = connection.get();
+  }
+  if (idlest) remove(*idlest);
+}
+
 void FrontLoop::read_letters() {
   for (Letter& letter : mailbox_->take()) {
-    if (letter.answer) uploads_.finished(letter.connection);
+    if (letter.answer || letter.suspended) uploads_.finished(letter.connection);
     const auto found = connections_.find(letter.connection);
     if (found == connections_.end()) continue;  // its client left; so does the answer
     Connection& connection = *found->second;
     if (letter.answer) {
       connection.answer(std::move(letter.answer));
+    } else if (letter.suspended) {
+      connection.suspend(std::move(letter.suspended));
     } else {
       connection.on_bell();
     }
@@ -174,14 +202,19 @@ void FrontLoop::for_each(Action action) {
 bool FrontLoop::handle(Connection& connection, Head head) {
   const ReplyForm form{.is_head = head.method == "HEAD", .closes = connection.closes()};
   return handlers_.submit([this, id = connection.id(), form, head = std::move(head)] {
-    mailbox_->post({id, written_reply(form, [&] { return dispatcher_.run(dispatcher_.resolve(head)); })});
+    Router::Resolved resolved;
+    const auto run = [&] {
+      resolved = dispatcher_.resolve(head);
+      return dispatcher_.run(resolved);
+    };
+    mailbox_->post(letter_with_answer(id, resolved.request, form, run));
   });
 }
 
 bool FrontLoop::handle(Connection& connection, Router::Resolved resolved) {
   const ReplyForm form{.is_head = false, .closes = connection.closes()};
   return handlers_.submit([this, id = connection.id(), form, resolved = std::move(resolved)] {
-    mailbox_->post({id, written_reply(form, [&] { return dispatcher_.run(resolved); })});
+    mailbox_->post(letter_with_answer(id, resolved.request, form, [&] { return dispatcher_.run(resolved); }));
   });
 }
 
@@ -190,15 +223,23 @@ bool FrontLoop::upload(Connection& connection, Head head, Router::Resolved resol
                      resolved = std::move(resolved), already = std::move(already)] {
     UploadBody body(socket, head, already, limits_);
     const ReplyForm form{.is_head = false, .closes = true};
-    mailbox_->post({id, written_reply(form, [&] { return dispatcher_.run_upload(resolved, body); })});
+    const auto run = [&] { return dispatcher_.run_upload(resolved, body); };
+    mailbox_->post(letter_with_answer(id, resolved.request, form, run));
   };
   // The thread owns the socket from its first moment on.
   poller_.forget(connection.socket());
   return uploads_.start(connection.id(), work);
 }
 
+void FrontLoop::resume(Connection& connection, std::unique_ptr<Suspended> suspended) {
+  handlers_.resume([this, id = connection.id(), kept = std::shared_ptr<Suspended>(std::move(suspended))] {
+    const auto run = [&] { return dispatcher_.resume(kept->request, *kept->pending); };
+    mailbox_->post(letter_with_answer(id, kept->request, kept->form, run));
+  });
+}
+
 std::function<void()> FrontLoop::bell_of(const Connection& connection) {
-  return [mailbox = mailbox_, id = connection.id()] { mailbox->post({id, nullptr}); };
+  return [mailbox = mailbox_, id = connection.id()] { mailbox->post({id, nullptr, nullptr}); };
 }
 
 }  // namespace geosis::server::http

@@ -39,11 +39,15 @@ class FrontLoop final : private ConnectionOwner {
   bool handle(Connection& connection, Head head) override;
   bool handle(Connection& connection, Router::Resolved resolved) override;
   bool upload(Connection& connection, Head head, Router::Resolved resolved, std::string already) override;
+  void resume(Connection& connection, std::unique_ptr<Suspended> suspended) override;
   std::function<void()> bell_of(const Connection& connection) override;
 
   void on_event(const epoll_event& event);
   void accept_all();
   void admit(Listener::Accepted accepted);
+  bool has_room_for(const std::string& peer) const;
+  /// Ends the connection that has been idle longest, of this peer or of any.
+  void end_idlest(const std::string* peer);
   void read_letters();
   void tick();
   void drain_some();

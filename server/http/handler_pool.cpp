@@ -1,5 +1,6 @@
 #include "server/http/handler_pool.h"
 
+#include <cstdint>
 #include <system_error>
 #include <utility>
 
@@ -15,9 +16,17 @@ HandlerPool::HandlerPool(std::size_t threads, std::size_t most_queued) : most_qu
 }
 
 bool HandlerPool::submit(std::function<void()> work) {
+  return add(std::move(work), most_queued_);
+}
+
+bool HandlerPool::resume(std::function<void()> work) {
+  return add(std::move(work), SIZE_MAX);
+}
+
+bool HandlerPool::add(std::function<void()> work, std::size_t most_queued) {
   {
     const std::lock_guard lock(mutex_);
-    if (is_stopping_ || queue_.size() >= most_queued_) return false;
+    if (is_stopping_ || queue_.size() >= most_queued) return false;
     queue_.push_back(std::move(work));
   }
   changed_.notify_one();

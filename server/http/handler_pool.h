@@ -18,10 +18,13 @@ class HandlerPool {
 
   /// False when the queue is full or the pool stopped; the work was not taken. Work must not throw.
   bool submit(std::function<void()> work);
+  /// The rest of work that was let in before: there is always room. False when the pool stopped.
+  bool resume(std::function<void()> work);
   /// Work that has begun is finished, queued work is dropped.
   void stop();
 
  private:
+  bool add(std::function<void()> work, std::size_t most_queued);
   void run();
 
   std::mutex mutex_;

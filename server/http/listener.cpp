@@ -1,8 +1,10 @@
 #include "server/http/listener.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <iterator>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -45,6 +47,19 @@ Result<Addresses> resolve(const std::string& address) {
   return Addresses(found, &freeaddrinfo);
 }
 
+/// Small packets leave at once; a peer that is gone without a word is noticed within a minute.
+void set_options(int socket) {
+  const auto set = [socket](int level, int name, int value) {
+    ::setsockopt(socket, level, name, &value, sizeof value);
+  };
+  set(IPPROTO_TCP, TCP_NODELAY, 1);
+  set(SOL_SOCKET, SO_KEEPALIVE, 1);
+  set(IPPROTO_TCP, TCP_KEEPIDLE, 30);
+  set(IPPROTO_TCP, TCP_KEEPINTVL, 10);
+  set(IPPROTO_TCP, TCP_KEEPCNT, 3);
+  set(IPPROTO_TCP, TCP_USER_TIMEOUT, 60'000);
+}
+
 Descriptor open_null() {
   return Descriptor(::open("/dev/null", O_RDONLY | O_CLOEXEC));
 }
@@ -54,7 +69,12 @@ std::uint16_t port_of(const sockaddr_storage& address) {
   return ntohs(reinterpret_cast<const sockaddr_in&>(address).sin_port);
 }
 
-std::string host_of(const sockaddr_storage& address, socklen_t length) {
+std::string host_of(sockaddr_storage address, socklen_t length) {
+  if (address.ss_family == AF_INET6) {
+    auto& bytes = reinterpret_cast<sockaddr_in6&>(address).sin6_addr.s6_addr;
+    const bool is_mapped = IN6_IS_ADDR_V4MAPPED(&reinterpret_cast<sockaddr_in6&>(address).sin6_addr);
+    if (!is_mapped) std::fill(std::begin(bytes) + 8, std::end(bytes), std::uint8_t{0});
+  }
   char host[NI_MAXHOST] = "";
   const auto* generic = reinterpret_cast<const sockaddr*>(&address);
   if (getnameinfo(generic, length, host, sizeof host, nullptr, 0, NI_NUMERICHOST) != 0) return "unknown";
@@ -89,8 +109,7 @@ Listener::Accepted Listener::accept() {
     Descriptor socket(
         ::accept4(socket_.number(), reinterpret_cast<sockaddr*>(&address), &length, SOCK_NONBLOCK | SOCK_CLOEXEC));
     if (socket.is_open()) {
-      const int yes = 1;
-      ::setsockopt(socket.number(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+      set_options(socket.number());
       return {Accepted::Outcome::connection, std::move(socket), host_of(address, length)};
     }
     switch (errno) {

@@ -21,8 +21,8 @@ class Listener {
       exhausted,  ///< the system lacks descriptors or memory: try again later
     };
     Outcome outcome = Outcome::none;
-    Descriptor socket;  ///< non-blocking, without Nagle's delay
-    std::string peer;   ///< address without port
+    Descriptor socket;  ///< non-blocking, without Nagle's delay; notices a peer that vanished
+    std::string peer;   ///< address without port; of an IPv6 one its /64, which is what one client owns
   };
   Accepted accept();
 

@@ -8,13 +8,15 @@
 #include "engine/base/result.h"
 #include "server/http/descriptor.h"
 #include "server/http/reply_writer.h"
+#include "server/http/suspended.h"
 
 namespace geosis::server::http {
 
-/// What other threads tell the loop about one of its connections.
+/// What other threads tell the loop about one of its connections. Neither: what it waits for may be there.
 struct Letter {
   std::uint64_t connection = 0;
-  std::unique_ptr<ReplyWriter> answer;  ///< unset: the connection's stream may go on
+  std::unique_ptr<ReplyWriter> answer;
+  std::unique_ptr<Suspended> suspended;
 };
 
 /// The loop's letter box: any thread posts, the loop's thread sleeps on the descriptor and takes. Shared, so that a

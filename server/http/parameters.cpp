@@ -1,11 +1,8 @@
 #include "server/http/parameters.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <utility>
-
-#include <openssl/evp.h>
 
 namespace geosis::server::http {
 namespace {
@@ -37,26 +34,6 @@ void each_element(std::string_view list, const Visit& visit) {
     visit(trimmed(list.substr(0, comma)));
     list.remove_prefix(std::min(comma + 1, list.size()));
   }
-}
-
-std::string hexadecimal(std::span<const unsigned char> bytes) {
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  for (const unsigned char byte : bytes) {
-    text += kDigits[byte >> 4];
-    text += kDigits[byte & 15];
-  }
-  return text;
-}
-
-/// 44 characters of base64 that stand for 32 bytes.
-std::optional<std::string> digest_from_base64(std::string_view text) {
-  constexpr std::size_t kDigest = 32, kText = 44;
-  if (text.size() != kText) return std::nullopt;
-  std::array<unsigned char, 36> bytes{};
-  const int length = EVP_DecodeBlock(bytes.data(), reinterpret_cast<const unsigned char*>(text.data()), kText);
-  if (length < 0 || !text.ends_with('=') || text[kText - 2] == '=') return std::nullopt;
-  return hexadecimal(std::span(bytes).first(kDigest));
 }
 
 }  // namespace
@@ -126,19 +103,6 @@ bool accepts(const Request& request, std::string_view media_type) {
     found = found || trimmed(element.substr(0, element.find(';'))) == media_type;
   });
   return found;
-}
-
-Result<std::optional<std::string>> stated_digest(const Request& request) {
-  std::optional<std::string> digest;
-  bool is_damaged = false;
-  const std::string text = header(request, "content-digest");
-  each_element(text, [&](std::string_view element) {
-    if (!element.starts_with("sha-256=:") || !element.ends_with(':') || element.size() < 10) return;
-    digest = digest_from_base64(element.substr(9, element.size() - 10));
-    is_damaged = is_damaged || !digest;
-  });
-  if (is_damaged) return Error{ErrorCode::invalid_argument, "header Content-Digest: sha-256 is not base64 of 32 bytes"};
-  return digest;
 }
 
 }  // namespace geosis::server::http

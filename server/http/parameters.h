@@ -36,8 +36,4 @@ Preference preference(const Request& request);
 /// Whether the client asks for this media type by name.
 bool accepts(const Request& request, std::string_view media_type);
 
-/// SHA-256 of a Content-Digest header (RFC 9530), hexadecimal; nullopt when none is stated.
-/// errors: invalid_argument: a value that is not base64 of 32 bytes.
-Result<std::optional<std::string>> stated_digest(const Request& request);
-
 }  // namespace geosis::server::http

@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "server/http/content_digest.h"
 #include "server/http/descriptor.h"
 #include "server/http/form_reader.h"
 #include "server/http/parameters.h"
@@ -40,7 +41,10 @@ Result<void> copy_body(BodyReader& body, const FileSink& sink) {
 
 }  // namespace
 
-Result<ReceivedFile> receive_file(const Request& request, BodyReader& body, BlobStore& store) {
+Result<ReceivedFile> receive_file(const Request& request, BodyReader& wire, BlobStore& store) {
+  auto stated = stated_digests(request);
+  if (!stated) return std::move(stated).error();
+  DigestedBody body(wire, *std::move(stated));
   auto staged = store.stage();
   if (!staged) return std::move(staged).error();
   ReceivedFile received{*std::move(staged), {}, {}};
@@ -51,11 +55,13 @@ Result<ReceivedFile> receive_file(const Request& request, BodyReader& body, Blob
   const auto boundary = form_boundary(header(request, "content-type"));
   if (!boundary) {
     if (auto copied = copy_body(body, sink); !copied) return std::move(copied).error();
+    if (auto same = body.check(); !same) return std::move(same).error();
     return received;
   }
   auto fields = read_form(body, *boundary, sink);
   if (!fields) return std::move(fields).error();
   if (!fields->has_file) return Error{ErrorCode::malformed_input, "form: there is no part named file"};
+  if (auto same = body.check(); !same) return std::move(same).error();
   received.name = std::move(fields->file_name);
   received.fields = std::move(fields->text);
   return received;

@@ -17,9 +17,9 @@ struct ReceivedFile {
   std::map<std::string, std::string> fields;  ///< text fields of a form
 };
 
-/// The body itself, or the part `file` of a multipart/form-data body.
+/// The body itself, or the part `file` of a multipart/form-data body; held against the request's Content-Digest.
 ///
-/// errors   those of the reader and the form; limit_exceeded, no_space: the disk is full.
-Result<ReceivedFile> receive_file(const Request& request, BodyReader& body, BlobStore& store);
+/// errors   those of the reader and the form; invalid_argument: another digest; no_space: the disk is full.
+Result<ReceivedFile> receive_file(const Request& request, BodyReader& wire, BlobStore& store);
 
 }  // namespace geosis::server::http

@@ -78,7 +78,7 @@ std::optional<ReplyWriter::Outcome> ReplyWriter::refill() {
     stream_.reset();
     return std::nullopt;
   }
-  if (!buffer_) buffer_ = std::make_unique_for_overwrite<char[]>(kSizeRoom + kPullBytes + kLineEnd.size());
+  hold_buffer();
   const auto pulled = pull(room);
   if (!pulled || pulled->count > room) return Outcome::broken;
   switch (pulled->state) {
@@ -96,6 +96,20 @@ std::optional<ReplyWriter::Outcome> ReplyWriter::refill() {
   stream_.reset();
   pending_[0] = kLastChunk;
   return std::nullopt;
+}
+
+bool ReplyWriter::say_idle_text() {
+  if (!stream_ || left_ || has_pending()) return false;
+  const std::string_view text = stream_->idle_text();
+  if (text.empty() || text.size() > kPullBytes) return false;
+  hold_buffer();
+  std::memcpy(buffer_.get() + kSizeRoom, text.data(), text.size());
+  frame(text.size());
+  return true;
+}
+
+void ReplyWriter::hold_buffer() {
+  if (!buffer_) buffer_ = std::make_unique_for_overwrite<char[]>(kSizeRoom + kPullBytes + kLineEnd.size());
 }
 
 Result<ByteStream::Pulled> ReplyWriter::pull(std::size_t room) {

@@ -32,6 +32,8 @@ class ReplyWriter {
 
   /// bell   called from any thread when a stream that waits may go on.
   void on_ready(std::function<void()> bell);
+  /// Says a stream's idle text; for one that waits. False when there is none to say.
+  bool say_idle_text();
   bool has_stream() const { return stream_ != nullptr; }
   bool closes() const { return closes_; }
   std::uint64_t bytes_written() const { return written_; }
@@ -43,6 +45,7 @@ class ReplyWriter {
   /// Pulls the stream's next bytes. Nothing = there is something to send, or the stream was finished.
   std::optional<Outcome> refill();
   Result<ByteStream::Pulled> pull(std::size_t room);
+  void hold_buffer();
   void frame(std::size_t count);
 
   std::string head_, body_;

@@ -8,6 +8,7 @@
 #include "server/http/error_reply.h"
 #include "server/http/json_reply.h"
 #include "server/http/parameters.h"
+#include "server/http/pending_replies.h"
 #include "server/http/received_file.h"
 #include "server/http/routes.h"
 #include "server/http/upload_options.h"
@@ -42,6 +43,13 @@ std::function<void()> abandonment(const std::shared_ptr<Extraction>& extraction)
   };
 }
 
+Reply accepted(const Extraction& extraction) {
+  const bool is_done = extraction.snapshot().state == JobState::done;
+  Reply reply = json_reply(is_done ? 200 : 202, resource_document(extraction));
+  reply.headers.emplace_back("Location", "/v1/extractions/" + extraction.identity().id);
+  return reply;
+}
+
 Reply create(Services services, const Request& request) {
   if (auto known = only_parameters(request, {}); !known) return error_reply(known.error());
   if (!has_json_body(request)) return not_json();
@@ -49,18 +57,10 @@ Reply create(Services services, const Request& request) {
   if (!wanted) return error_reply({ErrorCode::invalid_argument, "request body: " + wanted.error().message});
   const auto extraction = services.extractions.create(request.captures[0], *wanted, priority_of(request));
   if (!extraction) return error_reply(extraction.error());
-  const std::string id = (*extraction)->identity().id;
   if (accepts(request, kMultipart)) {
     return level_stream_reply(*extraction, abandonment(*extraction));
   }
-  if (const auto wait = preference(request).wait_seconds) {
-    // A preference: when too many wait already, the answer comes at once.
-    if (const auto seat = services.waiting.take()) (*extraction)->wait_for(std::chrono::seconds(*wait));
-  }
-  const bool is_done = (*extraction)->snapshot().state == JobState::done;
-  Reply reply = json_reply(is_done ? 200 : 202, resource_document(**extraction));
-  reply.headers.emplace_back("Location", "/v1/extractions/" + id);
-  return reply;
+  return after_extraction(*extraction, std::chrono::seconds(preference(request).wait_seconds.value_or(0)), accepted);
 }
 
 Reply get(Services services, const Request& request) {
@@ -73,7 +73,13 @@ Reply events(Services services, const Request& request) {
   if (!extraction) return error_reply(extraction.error());
   const std::string last = header(request, "last-event-id");
   std::uint64_t after = 0;
-  std::from_chars(last.data(), last.data() + last.size(), after);
+  const auto [end, problem] = std::from_chars(last.data(), last.data() + last.size(), after);
+  if (problem != std::errc{} || end != last.data() + last.size()) after = 0;  // none of ours: from the start
+  if (knows_the_end(**extraction, after)) {  // browsers connect again after every end; 204 tells them not to
+    Reply reply;
+    reply.status = 204;
+    return reply;
+  }
   return stream_reply(event_stream(*extraction, after), "text/event-stream");
 }
 
@@ -104,10 +110,6 @@ Reply manifest(Services services, const Request& request) {
   return reply;
 }
 
-Reply too_many_wait() {
-  return error_reply({ErrorCode::unavailable, "too many requests wait for results"});
-}
-
 Reply file_reply(Result<LevelFile> file, const char* type, const std::string& transform) {
   if (!file) return error_reply(file.error());
   Reply reply;
@@ -123,11 +125,11 @@ Reply bodies(Services services, const Request& request) {
   const auto extraction = services.extractions.find(request.captures[0]);
   if (!extraction) return error_reply(extraction.error());
   if (!(*extraction)->snapshot().manifest) return not_done(**extraction);
-  std::optional<WaitingRoom::Seat> seat;
-  if (!services.extractions.are_bodies_made(request.captures[0])) {
-    if (seat = services.waiting.take(); !seat) return too_many_wait();
-  }
-  return file_reply(services.extractions.bodies(request.captures[0]), "application/json", "");
+  const auto answer = [services, id = request.captures[0]] {
+    return file_reply(services.extractions.bodies(id), "application/json", "");
+  };
+  if (services.extractions.are_bodies_made(request.captures[0])) return answer();
+  return after_job(services.extractions.begin_bodies(request.captures[0]), WhenAbandoned::run_on, answer);
 }
 
 int small_number(const std::string& digits) {
@@ -159,13 +161,13 @@ Reply level(Services services, const Request& request) {
   if (!(*extraction)->snapshot().manifest) return not_done(**extraction);
   const LevelFormat wanted = *level_format_of(format);  // the route lets no other through
   const int number = small_number(request.captures[1]);
-  std::optional<WaitingRoom::Seat> seat;
-  if (!services.extractions.is_level_made(id, number, wanted)) {
-    if (seat = services.waiting.take(); !seat) return too_many_wait();
-  }
-  auto file = services.extractions.level(id, number, wanted);
-  const std::string transform = file ? file->transform : "";
-  return file_reply(std::move(file), media_type_of(wanted), transform);
+  const auto answer = [services, id, number, wanted] {
+    auto file = services.extractions.level(id, number, wanted);
+    const std::string transform = file ? file->transform : "";
+    return file_reply(std::move(file), media_type_of(wanted), transform);
+  };
+  if (services.extractions.is_level_made(id, number, wanted)) return answer();
+  return after_job(services.extractions.begin_level(id, number, wanted), WhenAbandoned::run_on, answer);
 }
 
 Reply part(Services services, const Request& request) {

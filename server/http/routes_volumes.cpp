@@ -9,6 +9,7 @@
 #include "server/http/error_reply.h"
 #include "server/http/json_reply.h"
 #include "server/http/parameters.h"
+#include "server/http/pending_replies.h"
 #include "server/http/received_file.h"
 #include "server/http/routes.h"
 #include "server/http/upload_options.h"
@@ -21,9 +22,6 @@ constexpr std::int64_t kLargestPage = 1000;
 Reply upload(Services services, const Request& request, BodyReader& body) {
   auto options = upload_options(request.query, {"name"});
   if (!options) return error_reply(options.error());
-  auto digest = stated_digest(request);
-  if (!digest) return error_reply(digest.error());
-  options->digest = *std::move(digest);
   options->name = parameter(request, "name").value_or("");
 
   auto received = receive_file(request, body, services.store);
@@ -77,15 +75,16 @@ Reply histogram(Services services, const Request& request) {
   if (auto known = only_parameters(request, {"bins"}); !known) return error_reply(known.error());
   const auto bins = whole_parameter(request, "bins", 256, 1, kMaxHistogramBins);
   if (!bins) return error_reply(bins.error());
-  Histogram counted;
-  const auto done = run_on_worker(services, [&](Job& job) -> Result<void> {
-    auto result = services.volumes.histogram(request.captures[0], static_cast<int>(*bins), job);
+  const auto counted = std::make_shared<Histogram>();
+  const auto count = [=, id = request.captures[0], bins = static_cast<int>(*bins)](Job& job) -> Result<void> {
+    auto result = services.volumes.histogram(id, bins, job);
     if (!result) return std::move(result).error();
-    counted = *std::move(result);
+    *counted = *std::move(result);
     return {};
+  };
+  return after_job(services.queue.submit(Priority::interactive, count), WhenAbandoned::cancel, [counted] {
+    return json_reply(200, {{"edges", counted->edges}, {"counts", counted->counts}, {"missing", counted->missing}});
   });
-  if (!done) return error_reply(done.error());
-  return json_reply(200, {{"edges", counted.edges}, {"counts", counted.counts}, {"missing", counted.missing}});
 }
 
 /// range=LOW,HIGH of the colours; the slice's own values where it is not given.

@@ -166,4 +166,10 @@ bool Job::wait_for(std::chrono::milliseconds time) const {
   return became_final_.wait_for(lock, std::min(time, kLongestWait), [&] { return is_final(status_.state); });
 }
 
+Result<void> Job::outcome() const {
+  const JobStatus now = status();
+  if (now.state == JobState::done) return {};
+  return now.error.value_or(Error{ErrorCode::cancelled, "cancelled"});
+}
+
 }  // namespace geosis::server

@@ -69,6 +69,8 @@ class Job final : public Progress {
   Subscription subscribe(std::function<void()> bell);
   /// Waits until the job is final or the time is over; true when final.
   bool wait_for(std::chrono::milliseconds time) const;
+  /// How a final job ended: the error of one that failed or was cancelled.
+  Result<void> outcome() const;
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
 #include <string_view>
 #include <thread>
@@ -14,15 +15,16 @@
 #include "server/http/front.h"
 #include "server/http/routes.h"
 #include "server/jobs/job_queue.h"
+#include "server/service/descriptor_limit.h"
 #include "server/store/dir_store.h"
 
 namespace geosis::server {
 namespace {
 
 constexpr const char* kTenant = "default";
-/// Handlers' threads, and how many of them may wait for results at one time.
-constexpr std::size_t kHandlerThreads = 40;
-constexpr int kWaitingSeats = 32;
+/// Handlers read the store and never wait for results: a few more than processors.
+constexpr std::size_t kHandlerThreads = 16;
+constexpr std::chrono::seconds kLongestStop{3};  ///< after the time for finishing is over
 
 bool is_loopback(std::string_view listen) {
   return listen.starts_with("127.") || listen.starts_with("localhost:") || listen.starts_with("[::1]:");
@@ -61,27 +63,33 @@ class StopSignals {
   sigset_t set_{};
 };
 
-/// Lets everything finish, until the time is over or a second signal comes; then stops the work, for which handlers may
-/// wait, and the front.
+/// Lets everything finish until the time is over, then stops the work, for which handlers may wait, and the front. A
+/// second signal ends the process at once, and so does work that does not stop: nothing acknowledged is lost by that.
 void drain_and_stop(http::Front& front, JobQueue& queue, StopSignals& signals, std::chrono::milliseconds grace) {
-  std::atomic<bool> is_drained{false};
-  std::jthread draining([&] {
-    const auto end = std::chrono::steady_clock::now() + grace;
+  const auto end = std::chrono::steady_clock::now() + grace;
+  std::atomic<bool> is_stopped{false};
+  std::jthread stopping([&] {
     front.drain(grace);
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - std::chrono::steady_clock::now());
     queue.drain(std::max(left, std::chrono::milliseconds(0)));
-    is_drained = true;
+    queue.stop();
+    front.stop();
+    is_stopped = true;
   });
-  while (!is_drained && !signals.wait_for(std::chrono::milliseconds(50))) {
+  while (!is_stopped) {
+    const bool is_late = std::chrono::steady_clock::now() > end + kLongestStop;
+    if (signals.wait_for(std::chrono::milliseconds(20)) || is_late) std::_Exit(EXIT_FAILURE);
   }
-  queue.stop();
-  front.stop();
 }
 
 http::FrontOptions front_options(const ServeOptions& options) {
   http::FrontOptions front;
   front.listen = options.listen;
   front.limits.upload_bytes = options.max_body_bytes;
+  // Some descriptors stay for the store: a client must not keep others' files from being opened.
+  const std::size_t descriptors = raise_descriptor_limit();
+  front.limits.connections = std::min(options.connections, descriptors - descriptors / 4);
+  front.limits.connections_per_peer = options.connections_per_peer;
   front.cors.origins = options.cors_origins;
   front.handler_threads = kHandlerThreads;
   return front;
@@ -103,8 +111,7 @@ Result<void> serve(const ServeOptions& options) {
   Extractions extractions(**store, volumes, queue, kTenant, options.threads);
 
   http::Router router;
-  http::WaitingRoom waiting(kWaitingSeats);
-  const http::Services services{**store, volumes, extractions, queue, waiting};
+  const http::Services services{**store, volumes, extractions, queue};
   http::add_volume_routes(router, services);
   http::add_extraction_routes(router, services);
   http::add_service_routes(router, services, options.page);

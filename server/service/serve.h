@@ -18,14 +18,16 @@ struct ServeOptions {
   std::string auth;            ///< "none": anybody may call; "" allows loopback alone
   std::vector<std::string> cors_origins;
   std::uint64_t max_body_bytes = std::uint64_t{1} << 40;
-  int threads = 1;  ///< that one extraction may use
-  int workers = 2;  ///< extractions at one time
-  int queued = 64;  ///< extractions that may wait for a worker
+  std::size_t connections = 4096;           ///< at one time; fewer where the system allows fewer descriptors
+  std::size_t connections_per_peer = 1024;  ///< of one address
+  int threads = 1;                          ///< that one extraction may use
+  int workers = 2;                          ///< extractions at one time
+  int queued = 64;                          ///< extractions that may wait for a worker
   std::chrono::seconds drain{25};
 };
 
-/// Serves until SIGTERM or SIGINT, then lets running answers finish for `drain`, and stops; a second signal stops at
-/// once. Prints "listening on http://HOST:PORT" on stdout when it is ready.
+/// Serves until SIGTERM or SIGINT, then lets running answers finish for `drain`, and stops; a second signal ends the
+/// process at once, with status 1. Prints "listening on http://HOST:PORT" on stdout when it is ready.
 ///
 /// errors   invalid_argument: an address that is not loopback without auth; those of store and front.
 Result<void> serve(const ServeOptions& options);

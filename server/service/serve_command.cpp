@@ -31,6 +31,9 @@ Command add_serve_command(CLI::App& app) {
   flag("--workers", options.workers, "extractions at one time")->check(CLI::Range(1, 1024));
   flag("--queued", options.queued, "extractions that may wait; more are refused")->check(CLI::Range(1, 1'000'000));
   flag("--max-body", options.max_body_bytes, "largest upload")->type_name("BYTES");
+  flag("--connections", options.connections, "clients at one time")->check(CLI::Range(1, 1'000'000));
+  flag("--peer-connections", options.connections_per_peer, "of them from one address; a proxy is one address")
+      ->check(CLI::Range(1, 1'000'000));
   flag("--auth", options.auth, "none = anybody may call; needed for addresses other than loopback")->type_name("HOW");
   flag("--cors-origin", options.cors_origins, "origins whose pages may call")->type_name("ORIGIN ...");
   flag("--page", arguments->page, "folder of the built page")->type_name("DIR");

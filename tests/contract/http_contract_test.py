@@ -126,6 +126,20 @@ class Volumes(Refusals):
         other = base64.b64encode(hashlib.sha256(b"").digest()).decode()
         self.refused(CLIENT.upload(SURVEY, Content_Digest=f"sha-256=:{other}:"), 400, "invalid_argument")
         self.refused(CLIENT.upload(SURVEY, Content_Digest="sha-256=:?:"), 400, "invalid_argument")
+        longer, damaged = (base64.b64encode(hashlib.sha512(data).digest()).decode() for data in (SURVEY, SURVEY[1:]))
+        self.assertEqual(CLIENT.upload(SURVEY, Content_Digest=f"md5=:x:, sha-512=:{longer}:").status, 200)
+        self.refused(CLIENT.upload(SURVEY, Content_Digest=f"sha-256=:{digest}:, sha-512=:{damaged}:"), 400,
+                     "invalid_argument")
+        self.refused(CLIENT.upload(SURVEY, Content_Digest=f"sha-512=:{digest}:"), 400, "invalid_argument")
+
+    def test_the_digest_of_a_form_is_that_of_the_whole_form(self):
+        form = (b'--xyz\r\nContent-Disposition: form-data; name="file"; filename="a.sgy"\r\n\r\n' + SURVEY +
+                b"\r\n--xyz--\r\n and an epilogue")
+        for data, status in ((form, 200), (SURVEY, 400)):
+            answer = CLIENT.call("POST", "/v1/volumes", body=form, headers={
+                "Content-Type": "multipart/form-data; boundary=xyz",
+                "Content-Digest": f"sha-256=:{base64.b64encode(hashlib.sha256(data).digest()).decode()}:"})
+            self.assertEqual(answer.status, status, answer.body[:300])
 
     def test_a_survey_that_could_be_two_grids_is_refused_with_both(self):
         problem = self.refused(CLIENT.upload(two_grids(6, 8, 4)), 422)
@@ -256,6 +270,13 @@ class Extractions(Refusals):
                 CONTRACT.validate({"$ref": "#/components/schemas/Level"}, data)
         rest = self.events(CLIENT.get(f"/v1/extractions/{extraction}/events", Last_Event_ID="3"))
         self.assertEqual([data["level"] for name, data in rest if name == "level"], [1, 0])
+
+    def test_events_after_the_last_one_are_no_more(self):
+        target = f"/v1/extractions/{done_extraction()}/events"
+        self.assertIn(b"id: 6\nevent: done\n", CLIENT.get(target).body)
+        self.assertEqual([name for name, _ in self.events(CLIENT.get(target, Last_Event_ID="5"))], ["done"])
+        self.assertEqual(CLIENT.get(target, Last_Event_ID="6").status, 204)
+        self.assertEqual(len(self.events(CLIENT.get(target, Last_Event_ID="6th"))), 6)
 
     @staticmethod
     def events(answer):

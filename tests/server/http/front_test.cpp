@@ -69,6 +69,7 @@ class FrontTest : public testing::Test {
   }
 
   std::shared_ptr<Tap> tap_ = std::make_shared<Tap>();
+  std::shared_ptr<Promise> promise_ = std::make_shared<Promise>();
   std::atomic<std::uint64_t> pulled_ = 0;
   std::promise<void> release_;
   std::shared_future<void> released_ = release_.get_future().share();
@@ -93,9 +94,17 @@ class FrontTest : public testing::Test {
         .get("/throw", [](const Request&) -> Reply { throw std::runtime_error("secret"); })
         .get("/split",
              [](const Request&) {
-               return Reply{200, {{"A", "b\r\nC: d"}}, "", nullptr, std::nullopt};
+               Reply reply;
+               reply.headers = {{"A", "b\r\nC: d"}};
+               return reply;
              })
         .get("/tap", [this](const Request&) { return stream_reply(std::make_unique<TapStream>(tap_)); })
+        .get("/promise",
+             [this](const Request&) {
+               Reply reply;
+               reply.pending = std::make_unique<PromisedReply>(promise_);
+               return reply;
+             })
         .get("/short", [](const Request&) { return stream_reply(std::make_unique<CountedStream>(10), 20); })
         .get("/counted", [](const Request&) { return stream_reply(std::make_unique<CountedStream>(200'000), 200'000); })
         .get("/large",
@@ -345,6 +354,57 @@ TEST_F(FrontTest, DestroysTheStreamWhenItsReaderLeaves) {
   EXPECT_EQ(body_of(get("/hello")), "hello");
 }
 
+TEST_F(FrontTest, SaysAStreamsIdleTextWhileNothingIsThere) {
+  FrontOptions options;
+  options.limits.quiet_time = 100ms;
+  tap_->idle_text = ":";
+  start(options);
+  RawClient client(port_);
+  client.send("GET /tap HTTP/1.1\r\nHost: a\r\n\r\n");
+  client.read_head();
+  EXPECT_EQ(client.read_until("1\r\n:\r\n1\r\n:\r\n"), "1\r\n:\r\n1\r\n:\r\n");
+  tap_->pour("news", true);
+  EXPECT_TRUE(client.read_until("0\r\n\r\n").ends_with("4\r\nnews\r\n0\r\n\r\n"));
+}
+
+TEST_F(FrontTest, PendingAnswersHoldNoHandlerThread) {
+  FrontOptions options;
+  options.handler_threads = 1;
+  options.queued_requests = 1;
+  start(options);
+  std::deque<RawClient> clients;
+  for (int i = 0; i < 50; ++i) {
+    clients.emplace_back(port_).send("GET /promise HTTP/1.1\r\nHost: a\r\n\r\n");
+    EXPECT_TRUE(holds_soon([&] { return body_of(get("/hello")) == "hello"; }));
+  }
+  promise_->keep();  // the bell of the last; the others are asked in their turn
+  for (RawClient& client : clients) {
+    EXPECT_EQ(body_of(client.read_answer()), "kept");
+    client.send("GET /hello HTTP/1.1\r\nHost: a\r\n\r\n");
+    EXPECT_EQ(body_of(client.read_answer()), "hello");
+  }
+}
+
+TEST_F(FrontTest, PendingAnswersComeAtTheirDeadline) {
+  start();
+  promise_->time = 150ms;
+  EXPECT_EQ(body_of(get("/promise")), "late");
+}
+
+TEST_F(FrontTest, ForgetsPendingAnswersOfClientsThatLeave) {
+  start();
+  RawClient client(port_);
+  client.send("GET /promise HTTP/1.1\r\nHost: a\r\n\r\n");
+  EXPECT_TRUE(holds_soon([&] {
+    const std::lock_guard lock(promise_->mutex);
+    return promise_->bell != nullptr;
+  }));
+  client.close();
+  EXPECT_TRUE(holds_soon([&] { return promise_->is_destroyed.load(); }));
+  promise_->keep();  // a bell that rings for nobody
+  EXPECT_EQ(body_of(get("/hello")), "hello");
+}
+
 TEST_F(FrontTest, BreaksTheConnectionWhenAStreamFailsOrIsShort) {
   start();
   tap_->fails = true;
@@ -396,12 +456,32 @@ TEST_F(FrontTest, CapsConnectionsOfOnePeer) {
   options.limits.connections_per_peer = 2;
   start(options);
   RawClient first(port_), second(port_);
-  first.send("GET /hello HTTP/1.1\r\nHost: a\r\n\r\n");
-  EXPECT_EQ(body_of(first.read_answer()), "hello");
-  RawClient third(port_);
-  EXPECT_EQ(status_of(third.read_all()), 503);
+  for (RawClient* busy : {&first, &second}) {
+    busy->send("GET /tap HTTP/1.1\r\nHost: a\r\n\r\n");
+    EXPECT_EQ(status_of(busy->read_head()), 200);
+  }
+  const std::string refused = RawClient(port_).read_all();
+  EXPECT_EQ(status_of(refused), 503);
+  EXPECT_NE(header_of(refused, "Retry-After"), "");
   second.close();
   EXPECT_TRUE(holds_soon([&] { return status_of(get("/hello")) == 200; }));
+}
+
+TEST_F(FrontTest, EndsIdleConnectionsForNewOnes) {
+  FrontOptions options;
+  options.limits.connections = 3;
+  start(options);
+  std::deque<RawClient> idle;
+  for (int i = 0; i < 3; ++i) {
+    idle.emplace_back(port_).send("GET /hello HTTP/1.1\r\nHost: a\r\n\r\n");
+    EXPECT_EQ(body_of(idle.back().read_answer()), "hello");
+  }
+  RawClient newcomer(port_);
+  newcomer.send("GET /hello HTTP/1.1\r\nHost: a\r\n\r\n");
+  EXPECT_EQ(body_of(newcomer.read_answer()), "hello");
+  EXPECT_TRUE(idle[0].is_closed_within(5s));
+  idle[2].send("GET /hello HTTP/1.1\r\nHost: a\r\n\r\n");
+  EXPECT_EQ(body_of(idle[2].read_answer()), "hello");
 }
 
 TEST_F(FrontTest, RefusesRequestsBeyondTheQueue) {
@@ -448,6 +528,19 @@ TEST_F(FrontTest, DrainFinishesRunningStreamsAndTakesNoMore) {
   EXPECT_NE(streaming.read_until("0\r\n\r\n").find("the end"), std::string::npos);
   streaming.close();
   EXPECT_TRUE(front_->drain(5s));
+}
+
+TEST_F(FrontTest, DrainEndsPendingAnswersThatCanEndEarly) {
+  start();
+  promise_->can_end_early = true;
+  RawClient client(port_);
+  client.send("GET /promise HTTP/1.1\r\nHost: a\r\n\r\n");
+  EXPECT_TRUE(holds_soon([&] {
+    const std::lock_guard lock(promise_->mutex);
+    return promise_->bell != nullptr;
+  }));
+  EXPECT_TRUE(front_->drain(5s));
+  EXPECT_EQ(body_of(client.read_all()), "late");
 }
 
 TEST_F(FrontTest, StopBreaksUploadsAndStreams) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstring>
 #include <functional>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <utility>
 
 #include "server/app/byte_stream.h"
+#include "server/http/exchange.h"
 
 namespace geosis::server::http {
 
@@ -17,6 +19,7 @@ struct Tap {
   std::mutex mutex;
   std::string bytes;  ///< that may be pulled
   bool is_ended = false, fails = false;
+  std::string idle_text;
   std::function<void()> bell;
   std::atomic<bool> is_destroyed = false;
 
@@ -51,9 +54,53 @@ class TapStream final : public ByteStream {
     const std::lock_guard lock(tap_->mutex);
     tap_->bell = std::move(bell);
   }
+  std::string_view idle_text() const override { return tap_->idle_text; }
 
  private:
   std::shared_ptr<Tap> tap_;
+};
+
+/// What a test and the pending answer it handed to the front both hold.
+struct Promise {
+  std::mutex mutex;
+  std::function<void()> bell;
+  std::atomic<bool> is_kept = false, is_destroyed = false;
+  std::chrono::milliseconds time{10'000};
+  bool can_end_early = false;
+
+  void keep() {
+    is_kept = true;
+    std::function<void()> ring;
+    {
+      const std::lock_guard lock(mutex);
+      ring = bell;
+    }
+    if (ring) ring();
+  }
+};
+
+/// Answers "kept" or "late" once the test keeps the promise, or its time is over.
+class PromisedReply final : public PendingReply {
+ public:
+  explicit PromisedReply(std::shared_ptr<Promise> promise) : promise_(std::move(promise)) {}
+  ~PromisedReply() override { promise_->is_destroyed = true; }
+
+  void on_ready(std::function<void()> bell) override {
+    const std::lock_guard lock(promise_->mutex);
+    promise_->bell = std::move(bell);
+  }
+  bool is_ready() const override { return promise_->is_kept; }
+  std::chrono::steady_clock::time_point deadline() const override { return deadline_; }
+  bool can_end_early() const override { return promise_->can_end_early; }
+  Reply finish() override {
+    Reply reply;
+    reply.body = promise_->is_kept ? "kept" : "late";
+    return reply;
+  }
+
+ private:
+  std::shared_ptr<Promise> promise_;
+  std::chrono::steady_clock::time_point deadline_ = std::chrono::steady_clock::now() + promise_->time;
 };
 
 /// The byte at a place of a CountedStream.

@@ -18,6 +18,9 @@ enum class ErrorCode {
   no_space,        ///< the disk or store is full; the same request may succeed later
   cancelled,
   deadline_exceeded,
+  unauthenticated,    ///< nobody knows who asks
+  permission_denied,  ///< who asks may not do this
+  quota_exceeded,     ///< who asks has too much running already; others may be served
   unavailable,
   internal,
 };
@@ -43,6 +46,12 @@ constexpr const char* name_of(ErrorCode code) {
       return "cancelled";
     case ErrorCode::deadline_exceeded:
       return "deadline_exceeded";
+    case ErrorCode::unauthenticated:
+      return "unauthenticated";
+    case ErrorCode::permission_denied:
+      return "permission_denied";
+    case ErrorCode::quota_exceeded:
+      return "quota_exceeded";
     case ErrorCode::unavailable:
       return "unavailable";
     case ErrorCode::internal:

@@ -18,6 +18,9 @@ constexpr std::array kNumbers = {
     ErrorNumbers{ErrorCode::no_space, 507, 8, "No space left"},
     ErrorNumbers{ErrorCode::cancelled, 499, 1, "Cancelled"},
     ErrorNumbers{ErrorCode::deadline_exceeded, 504, 4, "Deadline exceeded"},
+    ErrorNumbers{ErrorCode::unauthenticated, 401, 16, "Unauthenticated"},
+    ErrorNumbers{ErrorCode::permission_denied, 403, 7, "Permission denied"},
+    ErrorNumbers{ErrorCode::quota_exceeded, 429, 8, "Quota exceeded"},
     ErrorNumbers{ErrorCode::unavailable, 503, 14, "Unavailable"},
     ErrorNumbers{ErrorCode::internal, 500, 13, "Internal error"},
 };

@@ -181,7 +181,7 @@ void Connection::expect(bool is_taken) {
 
 void Connection::refuse(const Refusal& refusal) {
   closes_ = true;
-  Reply reply = resolved_ ? owner_.dispatcher().refuse(resolved_->request, refusal) : refusal_reply(refusal);
+  Reply reply = owner_.dispatcher().refuse(resolved_ ? resolved_->request : Request{}, refusal);
   resolved_.reset();
   body_.reset();
   answer(std::make_unique<ReplyWriter>(std::move(reply), ReplyForm{.is_head = false, .closes = true}));

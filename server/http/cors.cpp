@@ -8,7 +8,8 @@ namespace {
 constexpr const char* kExposedHeaders =
     "ETag, Location, Content-Range, Retry-After, X-Geosis-Shape, X-Geosis-Transform, X-Request-Id";
 constexpr const char* kAcceptedHeaders =
-    "Accept, Authorization, Content-Digest, Content-Type, If-None-Match, Last-Event-ID, Prefer, Priority, Range";
+    "Accept, Authorization, Content-Digest, Content-Type, If-None-Match, Last-Event-ID, Prefer, Priority, Range, "
+    "Traceparent, X-Request-Id";
 constexpr const char* kPreflightSeconds = "600";
 
 bool contains(const std::vector<std::string>& values, const std::string& value) {

@@ -1,23 +1,46 @@
 #include "server/http/dispatcher.h"
 
-#include <array>
-#include <atomic>
-#include <charconv>
-#include <random>
 #include <utility>
 
 #include "server/http/conditional.h"
 #include "server/http/error_reply.h"
+#include "server/http/request_ids.h"
 
 namespace geosis::server::http {
 namespace {
 
-/// Unique in this process and unlikely elsewhere: a counter that starts at a random place.
-std::string new_request_id() {
-  static std::atomic<std::uint64_t> next = (std::uint64_t{std::random_device{}()} << 32) | std::random_device{}();
-  std::array<char, 16> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), next.fetch_add(1), 16).ptr;
-  return std::string(digits.data(), end);
+/// A body that is counted as it is read.
+class CountedBody final : public BodyReader {
+ public:
+  explicit CountedBody(BodyReader& body) : body_(body) {}
+  Result<std::size_t> read(std::span<std::byte> into) override {
+    auto count = body_.read(into);
+    if (count) bytes_ += *count;
+    return count;
+  }
+  std::uint64_t bytes() const { return bytes_; }
+
+ private:
+  BodyReader& body_;
+  std::uint64_t bytes_ = 0;
+};
+
+/// Of a body that nobody counted.
+std::uint64_t body_bytes(const Request& request) {
+  return request.content_length.value_or(request.body.size());
+}
+
+/// Tells the middleware of an answer when its last byte has left.
+auto teller(Middleware& middleware, Answered answered, Dispatcher::Clock::time_point received) {
+  return [&middleware, answered = std::move(answered), received](std::uint64_t bytes, bool is_complete) mutable {
+    answered.bytes_out = bytes;
+    answered.is_complete = is_complete;
+    answered.duration = Dispatcher::Clock::now() - received;
+    try {
+      middleware.answered(answered);
+    } catch (...) {  // a lost line is no reason to lose the connection
+    }
+  };
 }
 
 template <class Call>
@@ -31,11 +54,20 @@ Reply guarded(Call call) {
 
 }  // namespace
 
-Dispatcher::Dispatcher(Router routes, CorsOptions cors) : routes_(std::move(routes)), cors_(std::move(cors)) {}
+Dispatcher::Dispatcher(Router routes, CorsOptions cors, Middleware* middleware)
+    : routes_(std::move(routes)), cors_(std::move(cors)), middleware_(middleware) {}
 
-Router::Resolved Dispatcher::resolve(const Head& head) const {
+Router::Resolved Dispatcher::resolve(const Head& head, Clock::time_point received) const {
   Router::Resolved resolved = routes_.resolve(head);
-  resolved.request.request_id = new_request_id();
+  Request& request = resolved.request;
+  request.received = received;
+  request.request_id = request_id_of(request);
+  request.trace_id = trace_id_of(request);
+  const bool has_handler =
+      !std::holds_alternative<Router::NoHandler>(resolved.target) && !std::holds_alternative<Refusal>(resolved.target);
+  if (middleware_ && has_handler) {
+    if (auto refusal = middleware_->admit(request)) resolved.target = *std::move(refusal);
+  }
   return resolved;
 }
 
@@ -46,17 +78,19 @@ bool Dispatcher::is_upload(const Router::Resolved& resolved) const {
 Reply Dispatcher::run(const Router::Resolved& resolved) const {
   const auto* handler = std::get_if<const Handler*>(&resolved.target);
   if (!handler) return finish(resolved.request, answer_without_handler(resolved));
-  return finish(resolved.request, guarded([&] { return (**handler)(resolved.request); }));
+  return finish(resolved.request, guarded([&] { return (**handler)(resolved.request); }), body_bytes(resolved.request));
 }
 
 Reply Dispatcher::run_upload(const Router::Resolved& resolved, BodyReader& body) const {
   const auto* handler = std::get_if<const UploadHandler*>(&resolved.target);
   if (!handler) return run(resolved);
-  return finish(resolved.request, guarded([&] { return (**handler)(resolved.request, body); }));
+  CountedBody counted(body);
+  Reply reply = guarded([&] { return (**handler)(resolved.request, counted); });
+  return finish(resolved.request, std::move(reply), counted.bytes());
 }
 
 Reply Dispatcher::resume(const Request& request, PendingReply& pending) const {
-  return finish(request, guarded([&] { return pending.finish(); }));
+  return finish(request, guarded([&] { return pending.finish(); }), body_bytes(request));
 }
 
 Reply Dispatcher::refuse(const Request& request, const Refusal& refusal) const {
@@ -71,11 +105,23 @@ Reply Dispatcher::answer_without_handler(const Router::Resolved& resolved) const
   return reply;
 }
 
-Reply Dispatcher::finish(const Request& request, Reply reply) const {
+Reply Dispatcher::finish(const Request& request, Reply reply, std::uint64_t bytes_in) const {
   if (reply.pending) return reply;
   apply_conditions(request, reply);
   if (request.method != "OPTIONS") apply_cors(cors_, request, reply);
-  reply.headers.emplace_back("X-Request-Id", request.request_id);
+  const std::string id = request.request_id.empty() ? request_id_of(request) : request.request_id;
+  reply.headers.emplace_back("X-Request-Id", id);
+  if (!middleware_) return reply;
+  reply.on_written = teller(*middleware_,
+                            {.method = request.method,
+                             .path = request.path,
+                             .route = request.route,
+                             .request_id = id,
+                             .trace_id = request.trace_id,
+                             .tenant = request.tenant,
+                             .status = reply.status,
+                             .bytes_in = bytes_in},
+                            request.received);
   return reply;
 }
 

@@ -3,18 +3,24 @@
 #include <cstdint>
 
 #include "server/http/cors.h"
+#include "server/http/middleware.h"
 #include "server/http/router.h"
 
 namespace geosis::server::http {
 
 /// From a request to its finished reply: the handler (an exception becomes a 500 that tells nothing), conditions,
-/// ranges, CORS, X-Request-Id. Knows no socket; used by any number of threads.
+/// ranges, CORS, X-Request-Id, and the middleware's say. Knows no socket; used by any number of threads.
 class Dispatcher {
  public:
-  Dispatcher(Router routes, CorsOptions cors);
+  using Clock = std::chrono::steady_clock;
 
-  /// Finds the handler and gives the request its id.
-  Router::Resolved resolve(const Head& head) const;
+  /// middleware   may be null.
+  Dispatcher(Router routes, CorsOptions cors, Middleware* middleware = nullptr);
+
+  /// Finds the handler, gives the request its ids and asks whether it may go on.
+  ///
+  /// received   when its head was complete.
+  Router::Resolved resolve(const Head& head, Clock::time_point received = Clock::now()) const;
   bool is_upload(const Router::Resolved& resolved) const;
 
   /// What is pending is not finished yet: resume() does that.
@@ -25,10 +31,11 @@ class Dispatcher {
 
  private:
   Reply answer_without_handler(const Router::Resolved& resolved) const;
-  Reply finish(const Request& request, Reply reply) const;
+  Reply finish(const Request& request, Reply reply, std::uint64_t bytes_in = 0) const;
 
   Router routes_;
   CorsOptions cors_;
+  Middleware* middleware_;
 };
 
 }  // namespace geosis::server::http

@@ -25,12 +25,17 @@ Reply problem_reply(int status, const Json& document) {
   reply.status = status;
   reply.headers = {{"Content-Type", "application/problem+json"}, {"Cache-Control", "no-store"}};
   if (status == 503 || status == 429) reply.headers.emplace_back("Retry-After", kRetryAfterSeconds);
+  if (status == 401) reply.headers.emplace_back("WWW-Authenticate", "Bearer realm=\"geosis\"");
   reply.body = document_text(document);
   return reply;
 }
 
 ErrorCode code_of(int status) {
   switch (status) {
+    case 401:
+      return ErrorCode::unauthenticated;
+    case 403:
+      return ErrorCode::permission_denied;
     case 404:
       return ErrorCode::not_found;
     case 408:
@@ -47,6 +52,8 @@ ErrorCode code_of(int status) {
       return ErrorCode::unsupported;
     case 416:
       return ErrorCode::invalid_argument;
+    case 429:
+      return ErrorCode::quota_exceeded;
     case 500:
       return ErrorCode::internal;
     case 503:

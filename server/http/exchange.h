@@ -23,7 +23,10 @@ struct Request {
   std::vector<std::string> captures;  ///< of the route's pattern, in order
   std::string body;                   ///< of small bodies, complete
   std::optional<std::uint64_t> content_length;
-  std::string request_id;
+  std::string route;  ///< the pattern that matched, with * for what varies; empty = none
+  std::string request_id, trace_id;
+  std::string tenant = "default";
+  std::chrono::steady_clock::time_point received = std::chrono::steady_clock::now();
 
   /// The header's value, or nothing. name   in lower case.
   const std::string* header(const std::string& name) const {
@@ -69,6 +72,8 @@ struct Reply {
   std::unique_ptr<ByteStream> stream;     ///< instead of the body
   std::optional<std::uint64_t> length;    ///< of the stream; unset = chunked
   std::unique_ptr<PendingReply> pending;  ///< instead of all else
+  /// Told the bytes on the wire when the answer is written (complete) or given up. Must not throw.
+  std::function<void(std::uint64_t bytes, bool is_complete)> on_written = {};
 };
 
 using Handler = std::function<Reply(const Request&)>;

@@ -8,6 +8,7 @@
 #include "engine/base/result.h"
 #include "server/http/cors.h"
 #include "server/http/limits.h"
+#include "server/http/middleware.h"
 #include "server/http/router.h"
 
 namespace geosis::server::http {
@@ -19,6 +20,7 @@ struct FrontOptions {
   std::size_t handler_threads = 8;
   std::size_t queued_requests = 256;  ///< that wait for a handler's thread; more are answered 503
   std::size_t upload_threads = 8;     ///< uploads at one time; more are answered 503
+  Middleware* middleware = nullptr;   ///< outlives the front
 };
 
 /// The HTTP door: sockets, framing and writing are ours; what a request means is the routes' business.

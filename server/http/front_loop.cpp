@@ -43,7 +43,7 @@ std::string full_answer() {
 FrontLoop::FrontLoop(const FrontOptions& options, Router routes, Listener listener, Poller poller,
                      std::shared_ptr<Mailbox> mailbox)
     : limits_(options.limits),
-      dispatcher_(std::move(routes), options.cors),
+      dispatcher_(std::move(routes), options.cors, options.middleware),
       listener_(std::move(listener)),
       poller_(std::move(poller)),
       mailbox_(std::move(mailbox)),
@@ -201,14 +201,15 @@ void FrontLoop::for_each(Action action) {
 
 bool FrontLoop::handle(Connection& connection, Head head) {
   const ReplyForm form{.is_head = head.method == "HEAD", .closes = connection.closes()};
-  return handlers_.submit([this, id = connection.id(), form, head = std::move(head)] {
-    Router::Resolved resolved;
-    const auto run = [&] {
-      resolved = dispatcher_.resolve(head);
-      return dispatcher_.run(resolved);
-    };
-    mailbox_->post(letter_with_answer(id, resolved.request, form, run));
-  });
+  return handlers_.submit(
+      [this, id = connection.id(), form, head = std::move(head), received = Dispatcher::Clock::now()] {
+        Router::Resolved resolved;
+        const auto run = [&] {
+          resolved = dispatcher_.resolve(head, received);
+          return dispatcher_.run(resolved);
+        };
+        mailbox_->post(letter_with_answer(id, resolved.request, form, run));
+      });
 }
 
 bool FrontLoop::handle(Connection& connection, Router::Resolved resolved) {

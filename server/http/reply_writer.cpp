@@ -24,8 +24,13 @@ constexpr std::string_view kLastChunk = "0\r\n\r\n";
 }  // namespace
 
 ReplyWriter::ReplyWriter(Reply reply, const ReplyForm& form) : closes_(form.closes) {
-  if (!is_writable(reply)) reply = refusal_reply({500, "the answer could not be written"});
+  if (!is_writable(reply)) {
+    auto on_written = std::move(reply.on_written);
+    reply = refusal_reply({500, "the answer could not be written"});
+    reply.on_written = std::move(on_written);
+  }
   head_ = reply_head(reply, form);
+  on_written_ = std::move(reply.on_written);
   pending_[0] = head_;
   if (form.is_head || is_bodiless(reply.status)) return;
   stream_ = std::move(reply.stream);
@@ -33,6 +38,10 @@ ReplyWriter::ReplyWriter(Reply reply, const ReplyForm& form) : closes_(form.clos
   if (stream_) return;
   body_ = std::move(reply.body);
   pending_[1] = body_;
+}
+
+ReplyWriter::~ReplyWriter() {
+  if (on_written_) on_written_(written_, is_finished_);
 }
 
 void ReplyWriter::on_ready(std::function<void()> bell) {
@@ -46,7 +55,10 @@ ReplyWriter::Outcome ReplyWriter::write(int socket) {
       if (send_pending(socket) >= 0 || errno == EINTR) continue;
       return errno == EAGAIN ? Outcome::blocked : Outcome::broken;
     }
-    if (!stream_) return Outcome::finished;
+    if (!stream_) {
+      is_finished_ = true;
+      return Outcome::finished;
+    }
     if (written_ >= turn_end) return Outcome::more;
     if (const auto outcome = refill()) return *outcome;
   }

@@ -20,6 +20,7 @@ class ReplyWriter {
   ReplyWriter(Reply reply, const ReplyForm& form);
   ReplyWriter(const ReplyWriter&) = delete;  // what is pending points into it
   ReplyWriter& operator=(const ReplyWriter&) = delete;
+  ~ReplyWriter();
 
   enum class Outcome {
     finished,
@@ -53,7 +54,9 @@ class ReplyWriter {
   std::optional<std::uint64_t> left_;  ///< of a stream of known length; unset = chunked
   std::unique_ptr<char[]> buffer_;     ///< room for a chunk's size, 64 KiB, line ends and the last chunk
   std::array<std::string_view, 2> pending_;
+  std::function<void(std::uint64_t, bool)> on_written_;
   std::uint64_t written_ = 0;
+  bool is_finished_ = false;
   bool closes_;
 };
 

@@ -15,6 +15,18 @@ Request request_of(const Head& head) {
   return request;
 }
 
+/// The pattern as people read it: /v1/volumes/* for /v1/volumes/([^/]+).
+std::string route_of(const std::string& pattern) {
+  std::string route;
+  int depth = 0;
+  for (const char c : pattern) {
+    if (c == '(' && depth++ == 0) route += '*';
+    if (depth == 0 && c != '\\') route += c;
+    if (c == ')') --depth;
+  }
+  return route;
+}
+
 }  // namespace
 
 Router& Router::get(const std::string& pattern, Handler handler) {
@@ -37,7 +49,7 @@ Router& Router::add(const std::string& method, const std::string& pattern, AnyHa
   auto resource = std::find_if(resources_.begin(), resources_.end(),
                                [&](const Resource& candidate) { return candidate.pattern == pattern; });
   if (resource == resources_.end()) {
-    resource = resources_.insert(resource, Resource{pattern, {}});
+    resource = resources_.insert(resource, Resource{pattern, route_of(pattern), {}});
     matcher_.add(pattern);
   }
   resource->handlers.insert_or_assign(method, std::move(handler));
@@ -65,6 +77,7 @@ Router::Resolved Router::resolve(const Head& head) const {
 
 void Router::find_handler(const Resource& resource, Resolved& resolved) const {
   resolved.allowed = resource.allowed();
+  resolved.request.route = resource.route;
   resolved.target = NoHandler{};
   const std::string& method = resolved.request.method;
   const auto found = resource.handlers.find(method == "HEAD" ? "GET" : method);

@@ -42,7 +42,7 @@ class Router {
  private:
   using AnyHandler = std::variant<Handler, UploadHandler>;
   struct Resource {
-    std::string pattern;
+    std::string pattern, route;
     std::map<std::string, AnyHandler> handlers;  ///< by method
 
     std::string allowed() const;

@@ -94,6 +94,11 @@ void Job::report(const char* stage, double fraction) {
   });
 }
 
+bool Job::cancelled() const {
+  signs_of_life_.fetch_add(1, std::memory_order_relaxed);
+  return cancel_requested_.load(std::memory_order_relaxed) || is_late();
+}
+
 void Job::request_cancel() {
   cancel_requested_.store(true, std::memory_order_relaxed);
   change([&] {
@@ -123,6 +128,9 @@ void Job::finish(Result<void> outcome) {
     if (is_final(status_.state)) return false;
     if (outcome) {
       status_.state = JobState::done;
+    } else if (outcome.error().code == ErrorCode::cancelled && !cancel_requested_ && is_late()) {
+      status_.state = JobState::failed;
+      status_.error = Error{ErrorCode::deadline_exceeded, "it was not done within the time it may take"};
     } else if (outcome.error().code == ErrorCode::cancelled) {
       status_.state = JobState::cancelled;
     } else {

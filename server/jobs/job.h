@@ -34,16 +34,25 @@ struct JobStatus {
 /// Knows nothing of what is computed. Every member may be called from any thread.
 class Job final : public Progress {
  public:
+  using Clock = std::chrono::steady_clock;
+
+  /// deadline   from then on cancelled() is true, and the job fails unless it is done.
+  explicit Job(std::optional<Clock::time_point> deadline = std::nullopt) : deadline_(deadline) {}
+
   /// Rings at every new stage, else at most every 100 ms and only when 1 % was added.
   void report(const char* stage, double fraction) override;
-  bool cancelled() const override { return cancel_requested_.load(std::memory_order_relaxed); }
+  bool cancelled() const override;
+  /// How often cancelled() was asked: a job whose number stands still makes no progress.
+  std::uint64_t signs_of_life() const { return signs_of_life_.load(std::memory_order_relaxed); }
+  bool is_late() const { return deadline_ && Clock::now() >= *deadline_; }
   /// A queued job is cancelled at once; a running one learns of it by asking cancelled().
   void request_cancel();
 
   JobStatus status() const;
   /// Moves to a new state. A final state stays.
   void set_running();
-  void finish(Result<void> outcome);  ///< done; cancelled when the error's code says so; else failed
+  /// done; failed; cancelled when the error's code says so, but failed when it was the deadline that stopped it.
+  void finish(Result<void> outcome);
 
   /// Rings all bells; for whoever adds news of his own to a job.
   void ring();
@@ -73,13 +82,13 @@ class Job final : public Progress {
   Result<void> outcome() const;
 
  private:
-  using Clock = std::chrono::steady_clock;
-
   template <class Apply>
   void change(Apply apply);
   void ring_bells();
 
+  const std::optional<Clock::time_point> deadline_;
   std::atomic<bool> cancel_requested_{false};
+  mutable std::atomic<std::uint64_t> signs_of_life_{0};
   mutable std::mutex mutex_;  // guards all below
   mutable std::condition_variable became_final_;
   JobStatus status_;

@@ -14,9 +14,10 @@ constexpr int kCodes = static_cast<int>(ErrorCode::internal) + 1;
 
 TEST(NumbersOf, EachCodeHasTheNumbersOfTheContract) {
   const std::map<std::string, std::pair<int, int>> expected = {
-      {"invalid_argument", {400, 3}}, {"malformed_input", {422, 3}}, {"unsupported", {422, 12}},
-      {"not_found", {404, 5}},        {"already_exists", {409, 6}},  {"limit_exceeded", {413, 8}},
-      {"no_space", {507, 8}},         {"cancelled", {499, 1}},       {"deadline_exceeded", {504, 4}},
+      {"invalid_argument", {400, 3}}, {"malformed_input", {422, 3}},   {"unsupported", {422, 12}},
+      {"not_found", {404, 5}},        {"already_exists", {409, 6}},    {"limit_exceeded", {413, 8}},
+      {"no_space", {507, 8}},         {"cancelled", {499, 1}},         {"deadline_exceeded", {504, 4}},
+      {"unauthenticated", {401, 16}}, {"permission_denied", {403, 7}}, {"quota_exceeded", {429, 8}},
       {"unavailable", {503, 14}},     {"internal", {500, 13}}};
   ASSERT_EQ(expected.size(), static_cast<std::size_t>(kCodes));
   for (int i = 0; i < kCodes; ++i) {

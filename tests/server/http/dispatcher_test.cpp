@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "server/http/request_ids.h"
+
 namespace geosis::server::http {
 namespace {
 
@@ -51,6 +53,87 @@ TEST(Dispatcher, GivesEveryRequestAnIdOfItsOwn) {
   const Dispatcher dispatcher = dispatcher_for({});
   EXPECT_NE(header_of(answer_of(dispatcher, "GET", "/things/a"), "X-Request-Id"),
             header_of(answer_of(dispatcher, "GET", "/things/a"), "X-Request-Id"));
+}
+
+TEST(Dispatcher, TakesASaneIdOfTheClientAndNoOther) {
+  const Dispatcher dispatcher = dispatcher_for({});
+  const auto id_for = [&](const std::string& stated) {
+    return header_of(answer_of(dispatcher, "GET", "/things/a", {{"x-request-id", stated}}), "X-Request-Id");
+  };
+  EXPECT_EQ(id_for("Job_7.a-b"), "Job_7.a-b");
+  EXPECT_EQ(id_for(std::string(128, 'a')), std::string(128, 'a'));
+  for (const std::string& bad : std::vector<std::string>{"", "a b", "a\"b", std::string(129, 'a')}) {
+    EXPECT_NE(id_for(bad), bad);
+    EXPECT_FALSE(id_for(bad).empty());
+  }
+}
+
+TEST(TraceIdOf, IsThatOfAValidTraceparentOnly) {
+  const auto trace_of = [](const std::string& header) {
+    Request request;
+    request.headers["traceparent"] = header;
+    return trace_id_of(request);
+  };
+  const std::string trace = "4bf92f3577b34da6a3ce929d0e0e4736";
+  EXPECT_EQ(trace_of("00-" + trace + "-00f067aa0ba902b7-01"), trace);
+  EXPECT_EQ(trace_of("01-" + trace + "-00f067aa0ba902b7-01-more"), trace);
+  EXPECT_EQ(trace_of("00-" + trace + "-00f067aa0ba902b7-01-more"), "");
+  EXPECT_EQ(trace_of("ff-" + trace + "-00f067aa0ba902b7-01"), "");
+  EXPECT_EQ(trace_of("00-" + std::string(32, '0') + "-00f067aa0ba902b7-01"), "");
+  EXPECT_EQ(trace_of("00-" + trace + "-0000000000000000-01"), "");
+  EXPECT_EQ(trace_of("00-4BF92F3577B34DA6A3CE929D0E0E4736-00f067aa0ba902b7-01"), "");
+  EXPECT_EQ(trace_of("00-4bf9"), "");
+}
+
+/// Refuses what has no key, and remembers what it is told.
+class Doorkeeper final : public Middleware {
+ public:
+  std::optional<Refusal> admit(Request& request) override {
+    if (request.header("x-key") == nullptr) return Refusal{401, "no key"};
+    request.tenant = *request.header("x-key");
+    return std::nullopt;
+  }
+  void answered(const Answered& answered) override { told.push_back(answered); }
+
+  std::vector<Answered> told;
+};
+
+Dispatcher guarded_dispatcher(Doorkeeper& keeper) {
+  Router routes;
+  routes.get("/things/([^/]+)\\.(a|(b|c))", [](const Request& request) {
+    Reply reply;
+    reply.body = request.tenant;
+    return reply;
+  });
+  return Dispatcher(std::move(routes), {}, &keeper);
+}
+
+TEST(Dispatcher, AsksTheMiddlewareBeforeTheHandler) {
+  Doorkeeper keeper;
+  const Dispatcher dispatcher = guarded_dispatcher(keeper);
+  const Reply refused = answer_of(dispatcher, "GET", "/things/x.a");
+  EXPECT_EQ(refused.status, 401);
+  EXPECT_NE(refused.body.find("unauthenticated"), std::string::npos);
+  EXPECT_FALSE(header_of(refused, "WWW-Authenticate").empty());
+  EXPECT_EQ(answer_of(dispatcher, "GET", "/things/x.a", {{"x-key", "blue"}}).body, "blue");
+  // What nobody answers needs no key.
+  EXPECT_EQ(answer_of(dispatcher, "GET", "/nothing").status, 404);
+  EXPECT_EQ(answer_of(dispatcher, "OPTIONS", "/things/x.a").status, 204);
+}
+
+TEST(Dispatcher, TellsTheMiddlewareWhatBecameOfARequest) {
+  Doorkeeper keeper;
+  const Dispatcher dispatcher = guarded_dispatcher(keeper);
+  Reply reply = answer_of(dispatcher, "GET", "/things/x.b", {{"x-key", "blue"}, {"x-request-id", "r1"}});
+  ASSERT_TRUE(reply.on_written);
+  EXPECT_TRUE(keeper.told.empty());
+  reply.on_written(77, false);
+  ASSERT_EQ(keeper.told.size(), 1U);
+  const Answered& told = keeper.told.front();
+  EXPECT_EQ(told.method + " " + told.route + " " + told.request_id + " " + told.tenant, "GET /things/*.* r1 blue");
+  EXPECT_EQ(told.status, 200);
+  EXPECT_EQ(told.bytes_out, 77U);
+  EXPECT_FALSE(told.is_complete);
 }
 
 TEST(Dispatcher, MatchesLongPathsWithoutEnd) {

@@ -516,6 +516,53 @@ TEST_F(FrontTest, SurvivesDescriptorExhaustion) {
   EXPECT_EQ(body_of(get("/hello")), "hello");
 }
 
+/// Remembers what it is told.
+class Recorder final : public Middleware {
+ public:
+  std::optional<Refusal> admit(Request&) override { return std::nullopt; }
+  void answered(const Answered& answered) override {
+    const std::lock_guard lock(mutex_);
+    told_[answered.path] = answered;
+    ++count_;
+  }
+  Answered of(const std::string& path) {
+    const std::lock_guard lock(mutex_);
+    return told_[path];
+  }
+  int count() {
+    const std::lock_guard lock(mutex_);
+    return count_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, Answered> told_;
+  int count_ = 0;
+};
+
+TEST_F(FrontTest, TellsTheMiddlewareOfEveryRequestOnce) {
+  Recorder recorder;
+  FrontOptions options;
+  options.middleware = &recorder;
+  start(options);
+  const std::string counted = get("/counted");
+  ask(port_, "POST /upload", "Content-Length: 5\r\n", "12345");
+  ask(port_, "BROKEN");
+  {
+    RawClient client(port_);
+    client.send("GET /tap HTTP/1.1\r\nHost: a\r\n\r\n");
+    client.read_head();
+  }
+  ASSERT_TRUE(holds_soon([&] { return recorder.count() == 4; })) << recorder.count();
+  EXPECT_EQ(recorder.of("/counted").bytes_out, counted.size());
+  EXPECT_TRUE(recorder.of("/counted").is_complete);
+  EXPECT_EQ(recorder.of("/upload").bytes_in, 5U);
+  EXPECT_EQ(recorder.of("").status, 400);  // of what was no request
+  EXPECT_FALSE(recorder.of("/tap").is_complete);
+  front_.reset();  // before what it tells
+  EXPECT_EQ(recorder.count(), 4);
+}
+
 TEST_F(FrontTest, DrainFinishesRunningStreamsAndTakesNoMore) {
   start();
   RawClient streaming(port_), idle(port_);

@@ -31,6 +31,7 @@ std::uint32_t Connection::interest() const {
   switch (state_) {
     case State::reading_head:
     case State::reading_body:
+    case State::starting_upload:
     case State::lingering:
       return EPOLLIN;
     case State::handling:
@@ -64,7 +65,7 @@ void Connection::on_bell() {
 
 void Connection::on_tick() {
   const auto now = Clock::now();
-  if (state_ == State::writing && !judge_rate()) return finish();
+  if (state_ == State::writing && !judge_rate()) return drop();
   if (state_ == State::suspended && (now >= suspended_->pending->deadline() || suspended_->pending->is_ready())) {
     return resume();
   }
@@ -72,8 +73,8 @@ void Connection::on_tick() {
     quiet_since_ = now;
     if (writer_->say_idle_text()) return write();
   }
-  const bool has_deadline =
-      state_ == State::reading_head || state_ == State::reading_body || state_ == State::lingering;
+  const bool has_deadline = state_ == State::reading_head || state_ == State::reading_body ||
+                            state_ == State::starting_upload || state_ == State::lingering;
   if (!has_deadline || now < deadline_) return;
   if (is_idle() || state_ == State::lingering) return finish();
   refuse({408, "the request did not arrive in time"});
@@ -94,8 +95,9 @@ void Connection::receive() {
   std::array<char, kReceiveBytes> piece;
   const ssize_t count = ::recv(socket_.number(), piece.data(), piece.size(), MSG_DONTWAIT);
   if (count < 0 && (errno == EAGAIN || errno == EINTR)) return;
+  if (count == 0 && state_ == State::starting_upload) return start_upload();  // which says that it is cut short
   if (count <= 0) return finish();
-  if (state_ != State::reading_head && state_ != State::reading_body) return;
+  if (state_ == State::lingering) return;
   if (in_.empty() && state_ == State::reading_head) deadline_ = Clock::now() + owner_.limits().head_deadline;
   in_.append(piece.data(), static_cast<std::size_t>(count));
   advance();
@@ -104,6 +106,7 @@ void Connection::receive() {
 void Connection::advance() {
   if (state_ == State::reading_head) read_head();
   if (state_ == State::reading_body) read_body();
+  if (state_ == State::starting_upload) read_upload_start();
 }
 
 void Connection::read_head() {
@@ -142,19 +145,41 @@ void Connection::begin_small_body(const Head& head) {
   body_.emplace(head, owner_.limits().small_body_bytes);
   state_ = State::reading_body;
   deadline_ = Clock::now() + owner_.limits().head_deadline;
-  if (!head.expects_continue || !in_.empty()) return;
+  if (head.expects_continue) invite();
+}
+
+void Connection::invite() {
   constexpr std::string_view kInvitation = "HTTP/1.1 100 Continue\r\n\r\n";
-  ::send(socket_.number(), kInvitation.data(), kInvitation.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (in_.empty()) ::send(socket_.number(), kInvitation.data(), kInvitation.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
 void Connection::begin_upload(Head head) {
   if (head.content_length.value_or(0) > owner_.limits().upload_bytes) {
     return refuse({413, "the body is larger than this server takes"});
   }
+  if (!owner_.takes_uploads()) return refuse({503, "too many uploads are running"});
   closes_ = true;
-  Router::Resolved resolved = *std::exchange(resolved_, std::nullopt);
+  state_ = State::starting_upload;
+  deadline_ = Clock::now() + owner_.limits().head_deadline;
+  if (head.expects_continue) invite();
+  upload_.emplace(std::move(head), *std::exchange(resolved_, std::nullopt));
+}
+
+void Connection::read_upload_start() {
+  switch (upload_->look_at(in_)) {
+    case UploadStart::State::too_little:
+      return;
+    case UploadStart::State::enough:
+      return start_upload();
+    case UploadStart::State::broken:
+      return refuse({400, "the body's chunked coding is broken"});
+  }
+}
+
+void Connection::start_upload() {
   state_ = State::uploading;
-  if (owner_.upload(*this, std::move(head), std::move(resolved), std::exchange(in_, {}))) return;
+  UploadStart start = *std::exchange(upload_, std::nullopt);
+  if (owner_.upload(*this, std::move(start.head), std::move(start.resolved), std::exchange(in_, {}))) return;
   refuse({503, "too many uploads are running"});
 }
 
@@ -181,86 +206,12 @@ void Connection::expect(bool is_taken) {
 
 void Connection::refuse(const Refusal& refusal) {
   closes_ = true;
-  Reply reply = owner_.dispatcher().refuse(resolved_ ? resolved_->request : Request{}, refusal);
+  const Request* request = resolved_ ? &resolved_->request : upload_ ? &upload_->resolved.request : nullptr;
+  Reply reply = owner_.dispatcher().refuse(request ? *request : Request{}, refusal);
   resolved_.reset();
+  upload_.reset();
   body_.reset();
   answer(std::make_unique<ReplyWriter>(std::move(reply), ReplyForm{.is_head = false, .closes = true}));
-}
-
-void Connection::suspend(std::unique_ptr<Suspended> suspended) {
-  if (is_half_closed_) return finish();
-  suspended_ = std::move(suspended);
-  state_ = State::suspended;
-  suspended_->pending->on_ready(owner_.bell_of(*this));
-  on_bell();  // what came before the bell was hung up
-}
-
-void Connection::resume() {
-  state_ = State::handling;
-  owner_.resume(*this, std::move(suspended_));
-}
-
-void Connection::answer(std::unique_ptr<ReplyWriter> writer) {
-  if (is_half_closed_ && writer->has_stream()) return finish();
-  closes_ = closes_ || writer->closes();
-  writer_ = std::move(writer);
-  judged_bytes_ = 0;
-  if (writer_->has_stream()) writer_->on_ready(owner_.bell_of(*this));
-  write();
-}
-
-void Connection::write() {
-  state_ = State::writing;
-  const bool was_blocked = blocked_since_.has_value();
-  const auto outcome = writer_->write(socket_.number());
-  if (was_blocked && !judge_rate()) return finish();
-  blocked_since_.reset();
-  switch (outcome) {
-    case ReplyWriter::Outcome::finished:
-      writer_.reset();
-      return closes_ ? linger() : next_request();
-    case ReplyWriter::Outcome::blocked:
-    case ReplyWriter::Outcome::more:  // the socket may be full by now as well
-      blocked_since_ = Clock::now();
-      return;
-    case ReplyWriter::Outcome::waiting:
-      state_ = State::waiting;
-      quiet_since_ = Clock::now();
-      return;
-    case ReplyWriter::Outcome::broken:
-      return finish();
-  }
-}
-
-bool Connection::judge_rate() {
-  if (!blocked_since_) return true;
-  const auto now = Clock::now();
-  const std::uint64_t written = writer_->bytes_written();
-  const bool is_fast_enough = rate_.add(written - judged_bytes_, now - *blocked_since_);
-  judged_bytes_ = written;
-  blocked_since_ = now;
-  return is_fast_enough;
-}
-
-void Connection::next_request() {
-  const Limits& limits = owner_.limits();
-  state_ = State::reading_head;
-  idle_since_ = Clock::now();
-  deadline_ = idle_since_ + (in_.empty() ? limits.idle_timeout : limits.head_deadline);
-  if (!in_.empty()) advance();
-}
-
-void Connection::linger() {
-  // Closing with unread bytes would reset the connection, and the reset may overtake the answer.
-  ::shutdown(socket_.number(), SHUT_WR);
-  state_ = State::lingering;
-  deadline_ = Clock::now() + owner_.limits().linger;
-}
-
-void Connection::finish() {
-  state_ = State::finished;
-  suspended_.reset();
-  writer_.reset();
 }
 
 }  // namespace geosis::server::http

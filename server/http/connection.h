@@ -15,6 +15,7 @@
 #include "server/http/rate_guard.h"
 #include "server/http/reply_writer.h"
 #include "server/http/suspended.h"
+#include "server/http/upload_start.h"
 
 namespace geosis::server::http {
 
@@ -32,6 +33,8 @@ class ConnectionOwner {
   virtual bool handle(Connection& connection, Head head) = 0;
   /// The same with the handler found, its body complete.
   virtual bool handle(Connection& connection, Router::Resolved resolved) = 0;
+  /// Whether upload() would find a thread just now.
+  virtual bool takes_uploads() const = 0;
   /// The same with a body that is still to be read; until the answer comes the socket belongs to the upload's thread.
   virtual bool upload(Connection& connection, Head head, Router::Resolved resolved, std::string already) = 0;
   /// The rest of a request that was suspended, on a handler's thread.
@@ -79,12 +82,13 @@ class Connection {
   enum class State {
     reading_head,
     reading_body,  ///< of a small request
-    handling,      ///< a handler's thread is at work
-    uploading,     ///< an upload's thread is at work and owns the socket
-    suspended,     ///< the answer is pending
-    writing,       ///< the socket is full, or others have their turn
-    waiting,       ///< the reply's stream has nothing yet
-    lingering,     ///< all is said; the peer may still be sending
+    starting_upload,
+    handling,   ///< a handler's thread is at work
+    uploading,  ///< an upload's thread is at work and owns the socket
+    suspended,  ///< the answer is pending
+    writing,    ///< the socket is full, or others have their turn
+    waiting,    ///< the reply's stream has nothing yet
+    lingering,  ///< all is said; the peer may still be sending
     finished,
   };
 
@@ -94,16 +98,23 @@ class Connection {
   void begin_request(Head head);
   void begin_small_body(const Head& head);
   void begin_upload(Head head);
+  void read_upload_start();
+  void start_upload();
   void read_body();
+  void invite();
   void resume();
   void write();
   void next_request();
   void linger();
   void finish();
+  /// Ends it without a word and throws away what the peer has not taken: nothing is kept for one who is too slow.
+  void drop();
 
   void expect(bool is_taken);
   /// An answer before, or instead of, a handler's: the connection closes, for its next bytes are in doubt.
   void refuse(const Refusal& refusal);
+  /// Bytes of all answers that the peer's system has taken: what its sockets hold here is not its merit.
+  std::uint64_t bytes_taken() const;
   /// False when the peer reads too slowly.
   bool judge_rate();
 
@@ -119,11 +130,13 @@ class Connection {
   bool is_half_closed_ = false;               ///< the peer sends no more
   std::optional<Router::Resolved> resolved_;  ///< of a request whose body is being read
   std::optional<BodyCollector> body_;
+  std::optional<UploadStart> upload_;
   std::unique_ptr<Suspended> suspended_;
   std::unique_ptr<ReplyWriter> writer_;
   Clock::time_point idle_since_, quiet_since_;
   std::optional<Clock::time_point> blocked_since_;
-  std::uint64_t judged_bytes_ = 0;  ///< of the writer's, which the rate has counted
+  std::uint64_t written_before_ = 0;  ///< by the writers before this one
+  std::uint64_t judged_bytes_ = 0;    ///< taken ones that the rate has counted
   RateGuard rate_;
 };
 

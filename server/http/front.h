@@ -19,7 +19,7 @@ struct FrontOptions {
   CorsOptions cors = {};
   std::size_t handler_threads = 8;
   std::size_t queued_requests = 256;  ///< that wait for a handler's thread; more are answered 503
-  std::size_t upload_threads = 8;     ///< uploads at one time; more are answered 503
+  std::size_t upload_threads = 32;    ///< uploads at one time; more are answered 503
   Middleware* middleware = nullptr;   ///< outlives the front
 };
 

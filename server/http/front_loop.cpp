@@ -16,23 +16,6 @@ namespace {
 constexpr std::uint64_t kListenerKey = 0, kMailboxKey = 1, kFirstConnection = 2;
 constexpr std::chrono::milliseconds kTick{100};
 
-/// What `run` answers, as a letter to the request's connection; whatever happens there is one.
-template <class Run>
-Letter letter_with_answer(std::uint64_t connection, const Request& request, const ReplyForm& form, Run run) {
-  Letter letter{connection, nullptr, nullptr};
-  try {
-    Reply reply = run();
-    if (reply.pending) {
-      letter.suspended = std::make_unique<Suspended>(Suspended{request, form, std::move(reply.pending)});
-    } else {
-      letter.answer = std::make_unique<ReplyWriter>(std::move(reply), form);
-    }
-  } catch (...) {
-    letter.answer = std::make_unique<ReplyWriter>(refusal_reply({500, "an unexpected failure"}), form);
-  }
-  return letter;
-}
-
 std::string full_answer() {
   const Reply reply = refusal_reply({503, "too many connections are open"});
   return reply_head(reply, {.is_head = false, .closes = true}) + reply.body;
@@ -43,6 +26,7 @@ std::string full_answer() {
 FrontLoop::FrontLoop(const FrontOptions& options, Router routes, Listener listener, Poller poller,
                      std::shared_ptr<Mailbox> mailbox)
     : limits_(options.limits),
+      held_bodies_(options.limits.held_bytes),
       dispatcher_(std::move(routes), options.cors, options.middleware),
       listener_(std::move(listener)),
       poller_(std::move(poller)),
@@ -197,6 +181,25 @@ void FrontLoop::for_each(Action action) {
     const auto left = connections_.find(id);
     if (left != connections_.end()) settle(*left->second);
   }
+}
+
+template <class Run>
+Letter FrontLoop::letter_with_answer(std::uint64_t connection, const Request& request, const ReplyForm& form, Run run) {
+  Letter letter{connection, nullptr, nullptr};
+  try {
+    Reply reply = run();
+    auto share = held_bodies_.take(reply.body.size());
+    if (!share) reply = dispatcher_.refuse(request, {503, "too many answers wait for their readers"});
+    if (reply.pending) {
+      letter.suspended = std::make_unique<Suspended>(Suspended{request, form, std::move(reply.pending)});
+    } else {
+      letter.answer =
+          std::make_unique<ReplyWriter>(std::move(reply), form, share ? *std::move(share) : BodyBudget::Share());
+    }
+  } catch (...) {
+    letter.answer = std::make_unique<ReplyWriter>(refusal_reply({500, "an unexpected failure"}), form);
+  }
+  return letter;
 }
 
 bool FrontLoop::handle(Connection& connection, Head head) {

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <unordered_map>
 
+#include "server/http/body_budget.h"
 #include "server/http/connection.h"
 #include "server/http/front.h"
 #include "server/http/handler_pool.h"
@@ -38,6 +39,7 @@ class FrontLoop final : private ConnectionOwner {
   bool is_draining() const override { return is_draining_; }
   bool handle(Connection& connection, Head head) override;
   bool handle(Connection& connection, Router::Resolved resolved) override;
+  bool takes_uploads() const override { return uploads_.has_room(); }
   bool upload(Connection& connection, Head head, Router::Resolved resolved, std::string already) override;
   void resume(Connection& connection, std::unique_ptr<Suspended> suspended) override;
   std::function<void()> bell_of(const Connection& connection) override;
@@ -59,7 +61,12 @@ class FrontLoop final : private ConnectionOwner {
   template <class Action>
   void for_each(Action action);
 
+  /// What `run` answers, as a letter to the request's connection; whatever happens there is one.
+  template <class Run>
+  Letter letter_with_answer(std::uint64_t connection, const Request& request, const ReplyForm& form, Run run);
+
   Limits limits_;
+  BodyBudget held_bodies_;
   Dispatcher dispatcher_;
   Listener listener_;
   Poller poller_;

@@ -19,8 +19,11 @@ struct Limits {
   std::chrono::milliseconds idle_timeout{60'000};       ///< between requests
   std::chrono::milliseconds quiet_time{15'000};         ///< after which a stream that waits says its idle text
   std::chrono::milliseconds linger{2'000};              ///< for the peer to read an answer before we hang up
-  std::uint64_t bytes_per_second = 1024;                ///< slower readers and uploads are dropped
-  std::chrono::milliseconds rate_window{10'000};        ///< over which that rate is judged
+  std::uint64_t bytes_per_second = 1024;                ///< slower readers are dropped
+  std::uint64_t upload_bytes_per_second = 16 * 1024;    ///< slower uploads, which hold a thread each
+  std::chrono::milliseconds rate_window{10'000};        ///< over which those rates are judged
+  std::uint64_t held_bytes = std::uint64_t{256} << 20;  ///< of bodies made whole; more are answered 503
+  std::chrono::seconds hold_time{120};                  ///< in which a reader has to take a body made whole
 };
 
 }  // namespace geosis::server::http

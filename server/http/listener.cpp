@@ -47,12 +47,14 @@ Result<Addresses> resolve(const std::string& address) {
   return Addresses(found, &freeaddrinfo);
 }
 
-/// Small packets leave at once; a peer that is gone without a word is noticed within a minute.
+/// Small packets leave at once, big answers do not pile up; a peer that is gone without a word is noticed within a
+/// minute.
 void set_options(int socket) {
   const auto set = [socket](int level, int name, int value) {
     ::setsockopt(socket, level, name, &value, sizeof value);
   };
   set(IPPROTO_TCP, TCP_NODELAY, 1);
+  set(IPPROTO_TCP, TCP_NOTSENT_LOWAT, 256 * 1024);  // else a slow reader makes the kernel hold megabytes
   set(SOL_SOCKET, SO_KEEPALIVE, 1);
   set(IPPROTO_TCP, TCP_KEEPIDLE, 30);
   set(IPPROTO_TCP, TCP_KEEPINTVL, 10);

@@ -11,6 +11,7 @@ class RateGuard {
   RateGuard(std::uint64_t bytes_per_second, std::chrono::milliseconds window)
       : bytes_per_second_(bytes_per_second), window_(window) {}
 
+  void set_rate(std::uint64_t bytes_per_second) { bytes_per_second_ = bytes_per_second; }
   /// Notes that `bytes` moved after `waited`. False when a window ended in which too few did.
   bool add(std::uint64_t bytes, std::chrono::steady_clock::duration waited) {
     bytes_ += bytes;

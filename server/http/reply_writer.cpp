@@ -23,7 +23,8 @@ constexpr std::string_view kLastChunk = "0\r\n\r\n";
 
 }  // namespace
 
-ReplyWriter::ReplyWriter(Reply reply, const ReplyForm& form) : closes_(form.closes) {
+ReplyWriter::ReplyWriter(Reply reply, const ReplyForm& form, BodyBudget::Share share)
+    : share_(std::move(share)), closes_(form.closes) {
   if (!is_writable(reply)) {
     auto on_written = std::move(reply.on_written);
     reply = refusal_reply({500, "the answer could not be written"});

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "server/http/body_budget.h"
 #include "server/http/exchange.h"
 #include "server/http/reply_head.h"
 
@@ -17,7 +18,8 @@ namespace geosis::server::http {
 /// was pulled before; while it waits for its next bytes no buffer is held. Its destruction destroys the stream.
 class ReplyWriter {
  public:
-  ReplyWriter(Reply reply, const ReplyForm& form);
+  /// share   of the budget of bodies, which is given back with the writer.
+  ReplyWriter(Reply reply, const ReplyForm& form, BodyBudget::Share share = {});
   ReplyWriter(const ReplyWriter&) = delete;  // what is pending points into it
   ReplyWriter& operator=(const ReplyWriter&) = delete;
   ~ReplyWriter();
@@ -38,6 +40,8 @@ class ReplyWriter {
   bool has_stream() const { return stream_ != nullptr; }
   bool closes() const { return closes_; }
   std::uint64_t bytes_written() const { return written_; }
+  /// Of the body that was made whole and is kept until it is written.
+  std::uint64_t held_bytes() const { return body_.size(); }
 
  private:
   bool has_pending() const { return !pending_[0].empty() || !pending_[1].empty(); }
@@ -49,6 +53,7 @@ class ReplyWriter {
   void hold_buffer();
   void frame(std::size_t count);
 
+  BodyBudget::Share share_;
   std::string head_, body_;
   std::unique_ptr<ByteStream> stream_;
   std::optional<std::uint64_t> left_;  ///< of a stream of known length; unset = chunked

@@ -23,8 +23,7 @@ UploadBody::UploadBody(int socket, const Head& head, std::string already, const 
       buffer_(std::move(already)),
       left_(head.is_chunked ? limits.upload_bytes : head.content_length.value_or(0)),
       is_chunked_(head.is_chunked),
-      awaits_invitation_(head.expects_continue),
-      rate_(limits.bytes_per_second, limits.rate_window) {}
+      rate_(limits.upload_bytes_per_second, limits.rate_window) {}
 
 Result<std::size_t> UploadBody::read(std::span<std::byte> into) {
   if (error_) return *error_;
@@ -71,7 +70,6 @@ Result<std::size_t> UploadBody::receive(std::span<std::byte> into) {
     begin_ += count;
     return count;
   }
-  invite();
   for (;;) {
     const ssize_t count = ::recv(socket_, into.data(), into.size(), MSG_DONTWAIT);
     if (count > 0) {
@@ -93,13 +91,6 @@ Result<void> UploadBody::wait_for_bytes() {
   ::poll(&readable, 1, kPollMilliseconds);
   if (rate_.add(0, std::chrono::steady_clock::now() - start)) return {};
   return Error{ErrorCode::deadline_exceeded, "the body arrives too slowly"};
-}
-
-void UploadBody::invite() {
-  constexpr std::string_view kInvitation = "HTTP/1.1 100 Continue\r\n\r\n";
-  if (!std::exchange(awaits_invitation_, false)) return;
-  // A client that does not get it sends its body after a while anyway.
-  ::send(socket_, kInvitation.data(), kInvitation.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
 }
 
 }  // namespace geosis::server::http

@@ -26,14 +26,12 @@ class UploadBody final : public BodyReader {
   /// Bytes of the wire, at least one. Waits no longer than the minimum rate allows.
   Result<std::size_t> receive(std::span<std::byte> into);
   Result<void> wait_for_bytes();
-  void invite();
 
   int socket_;
   std::string buffer_;  ///< bytes of the wire that are not decoded yet, from begin_ on
   std::size_t begin_ = 0;
   std::uint64_t left_;  ///< of the stated length, or what the limit still allows of a chunked body
   bool is_chunked_;
-  bool awaits_invitation_;  ///< the client waits for 100 Continue
   ChunkDecoder decoder_;
   RateGuard rate_;
   std::optional<Error> error_;  ///< stays: a body that failed once goes on failing

@@ -6,7 +6,7 @@
 namespace geosis::server::http {
 
 bool UploadThreads::start(std::uint64_t connection, std::function<void()> work) {
-  if (threads_.size() >= most_) return false;
+  if (!has_room()) return false;
   try {
     threads_.emplace(connection, std::thread(std::move(work)));
   } catch (const std::system_error&) {

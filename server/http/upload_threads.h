@@ -14,6 +14,7 @@ class UploadThreads {
   explicit UploadThreads(std::size_t most) : most_(most) {}
   ~UploadThreads() { join_all(); }
 
+  bool has_room() const { return threads_.size() < most_; }
   /// False when there are enough already, or the system gives no thread. Work must not throw.
   bool start(std::uint64_t connection, std::function<void()> work);
   /// The connection's upload has answered: its thread is about to end.

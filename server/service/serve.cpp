@@ -90,6 +90,8 @@ http::FrontOptions front_options(const ServeOptions& options) {
   const std::size_t descriptors = raise_descriptor_limit();
   front.limits.connections = std::min(options.connections, descriptors - descriptors / 4);
   front.limits.connections_per_peer = options.connections_per_peer;
+  front.limits.head_deadline = front.limits.rate_window = options.patience;
+  front.limits.idle_timeout = options.idle;
   front.cors.origins = options.cors_origins;
   front.handler_threads = kHandlerThreads;
   return front;

@@ -20,6 +20,8 @@ struct ServeOptions {
   std::uint64_t max_body_bytes = std::uint64_t{1} << 40;
   std::size_t connections = 4096;           ///< at one time; fewer where the system allows fewer descriptors
   std::size_t connections_per_peer = 1024;  ///< of one address
+  std::chrono::seconds patience{10};        ///< for a request's head, and over which minimum rates are judged
+  std::chrono::seconds idle{60};            ///< between a connection's requests
   int threads = 1;                          ///< that one extraction may use
   int workers = 2;                          ///< extractions at one time
   int queued = 64;                          ///< extractions that may wait for a worker

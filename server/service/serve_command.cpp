@@ -12,7 +12,7 @@ namespace {
 struct ServeArguments {
   ServeOptions options;
   std::string store = "geosis-store", page = GEOSIS_PAGE_FOLDER;
-  int drain_seconds = 25;
+  int drain_seconds = 25, patience_seconds = 10, idle_seconds = 60;
 };
 
 }  // namespace
@@ -34,6 +34,10 @@ Command add_serve_command(CLI::App& app) {
   flag("--connections", options.connections, "clients at one time")->check(CLI::Range(1, 1'000'000));
   flag("--peer-connections", options.connections_per_peer, "of them from one address; a proxy is one address")
       ->check(CLI::Range(1, 1'000'000));
+  flag("--patience-seconds", arguments->patience_seconds, "for a request's head; minimum rates are judged as long")
+      ->check(CLI::Range(1, 3600));
+  flag("--idle-seconds", arguments->idle_seconds, "that a connection may stay open between requests")
+      ->check(CLI::Range(1, 3600));
   flag("--auth", options.auth, "none = anybody may call; needed for addresses other than loopback")->type_name("HOW");
   flag("--cors-origin", options.cors_origins, "origins whose pages may call")->type_name("ORIGIN ...");
   flag("--page", arguments->page, "folder of the built page")->type_name("DIR");
@@ -42,6 +46,8 @@ Command add_serve_command(CLI::App& app) {
   return [arguments]() -> Result<void> {
     arguments->options.store = arguments->store;
     arguments->options.page = arguments->page;
+    arguments->options.patience = std::chrono::seconds(arguments->patience_seconds);
+    arguments->options.idle = std::chrono::seconds(arguments->idle_seconds);
     arguments->options.drain = std::chrono::seconds(arguments->drain_seconds);
     return serve(arguments->options);
   };

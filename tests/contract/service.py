@@ -31,22 +31,23 @@ class Answer:
 class Service:
     """A server on a free port with a store of its own; a context manager."""
 
-    def __init__(self, store, *flags):
+    def __init__(self, store, *flags, **popen):
+        self._popen = popen
         self._command = [GEOSIS, "serve", "--listen", "127.0.0.1:0", "--store", str(store), *flags]
 
     def __enter__(self):
-        self._process = subprocess.Popen(self._command, stdout=subprocess.PIPE, text=True)
-        line = self._process.stdout.readline()
+        self.process = subprocess.Popen(self._command, stdout=subprocess.PIPE, text=True, **self._popen)
+        line = self.process.stdout.readline()
         if not line.startswith("listening on http://"):
-            self._process.kill()
+            self.process.kill()
             raise RuntimeError(f"the server did not start: {line!r}")
         self.address = urllib.parse.urlsplit(line.split()[-1]).netloc
         return self
 
     def __exit__(self, *_):
-        self._process.terminate()
-        self._process.wait(timeout=30)
-        self._process.stdout.close()
+        self.process.terminate()
+        self.process.wait(timeout=30)
+        self.process.stdout.close()
 
 
 class Client:

@@ -19,6 +19,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::uint64_t kLargeBytes = 32 << 20;  // more than sockets buffer
+constexpr std::size_t kUploadStart = 40'000;     // enough for an upload to get its thread
 
 Reply text_reply(std::string text) {
   Reply reply;
@@ -73,7 +74,7 @@ class FrontTest : public testing::Test {
   std::atomic<std::uint64_t> pulled_ = 0;
   std::promise<void> release_;
   std::shared_future<void> released_ = release_.get_future().share();
-  std::atomic<int> held_ = 0;
+  std::atomic<int> held_ = 0, uploading_ = 0;
   std::unique_ptr<Front> front_;
   std::uint16_t port_ = 0;
 
@@ -89,7 +90,11 @@ class FrontTest : public testing::Test {
              })
         .post("/echo", [](const Request& request) { return text_reply(request.body); })
         .remove("/echo", [](const Request& request) { return text_reply("removed " + request.body); })
-        .upload("/upload", count_body)
+        .upload("/upload",
+                [this](const Request& request, BodyReader& body) {
+                  ++uploading_;
+                  return count_body(request, body);
+                })
         .upload("/ignore", [](const Request&, BodyReader&) { return text_reply("not read"); })
         .get("/throw", [](const Request&) -> Reply { throw std::runtime_error("secret"); })
         .get("/split",
@@ -107,6 +112,7 @@ class FrontTest : public testing::Test {
              })
         .get("/short", [](const Request&) { return stream_reply(std::make_unique<CountedStream>(10), 20); })
         .get("/counted", [](const Request&) { return stream_reply(std::make_unique<CountedStream>(200'000), 200'000); })
+        .get("/body", [](const Request&) { return text_reply(std::string(kLargeBytes, 'x')); })
         .get("/large",
              [this](const Request&) {
                return stream_reply(std::make_unique<CountedStream>(kLargeBytes, &pulled_), kLargeBytes);
@@ -281,10 +287,26 @@ TEST_F(FrontTest, TellsUploadsThatAreCutShortOrTooLong) {
 TEST_F(FrontTest, GivesUpOnTricklingUploads) {
   FrontOptions options;
   options.limits.rate_window = 300ms;
+  options.limits.head_deadline = 300ms;
   start(options);
-  RawClient client(port_);
-  client.send("POST /upload HTTP/1.1\r\nHost: a\r\nContent-Length: 1000000\r\n\r\nx");
-  EXPECT_NE(client.read_all().find("deadline_exceeded"), std::string::npos);
+  const std::string head = "POST /upload HTTP/1.1\r\nHost: a\r\nContent-Length: 1000000\r\n\r\n";
+  RawClient early(port_), late(port_);
+  early.send(head + "x");
+  late.send(head + std::string(kUploadStart, 'x'));
+  EXPECT_EQ(status_of(early.read_all()), 408);
+  EXPECT_NE(late.read_all().find("deadline_exceeded"), std::string::npos);
+}
+
+TEST_F(FrontTest, UploadsThatSendNextToNothingTakeNoThread) {
+  FrontOptions options;
+  options.upload_threads = 1;
+  start(options);
+  std::deque<RawClient> idlers;
+  for (const char* framing : {"Content-Length: 100000\r\n\r\nx", "Transfer-Encoding: chunked\r\n\r\n1\r\nx\r\n"})
+    idlers.emplace_back(port_).send(std::string("POST /upload HTTP/1.1\r\nHost: a\r\n") + framing);
+  EXPECT_EQ(body_of(ask(port_, "POST /upload", "Content-Length: 4\r\n", "four")), "4");
+  const std::string chunks = "4\r\nfour\r\n0\r\n\r\n";
+  EXPECT_EQ(body_of(ask(port_, "POST /upload", "Transfer-Encoding: chunked\r\n", chunks)), "4");
 }
 
 TEST_F(FrontTest, AnswersUploadsThatAreNotRead) {
@@ -297,13 +319,15 @@ TEST_F(FrontTest, CapsTheNumberOfUploads) {
   options.upload_threads = 1;
   start(options);
   RawClient first(port_);
-  first.send("POST /upload HTTP/1.1\r\nHost: a\r\nContent-Length: 4\r\nExpect: 100-continue\r\n\r\n");
+  first.send("POST /upload HTTP/1.1\r\nHost: a\r\nContent-Length: 40004\r\nExpect: 100-continue\r\n\r\n");
   EXPECT_EQ(status_of(first.read_head()), 100);
+  first.send(std::string(kUploadStart, 'x'));
+  EXPECT_TRUE(holds_soon([&] { return uploading_ == 1; }));
   const std::string refused = ask(port_, "POST /upload", "Content-Length: 0\r\n");
   EXPECT_EQ(status_of(refused), 503);
   EXPECT_NE(header_of(refused, "Retry-After"), "");
   first.send("four");
-  EXPECT_EQ(body_of(first.read_answer()), "4");
+  EXPECT_EQ(body_of(first.read_answer()), "40004");
   EXPECT_EQ(status_of(ask(port_, "POST /upload", "Content-Length: 0\r\n")), 200);
 }
 
@@ -434,6 +458,37 @@ TEST_F(FrontTest, DropsReadersBelowTheMinimumRate) {
   client.send("GET /large HTTP/1.1\r\nHost: a\r\n\r\n");
   std::this_thread::sleep_for(800ms);
   EXPECT_LT(client.read_all().size(), kLargeBytes);
+}
+
+TEST_F(FrontTest, HoldsOnlySoManyBytesForReadersWhoTakeTheirTime) {
+  FrontOptions options;
+  options.limits.held_bytes = kLargeBytes + 1000;
+  start(options);
+  RawClient slow(port_, 4096);
+  slow.send("GET /body HTTP/1.1\r\nHost: a\r\n\r\n");
+  EXPECT_EQ(status_of(slow.read_head()), 200);
+  EXPECT_EQ(status_of(get("/body")), 503);
+  EXPECT_EQ(body_of(get("/hello")), "hello");
+  slow.close();
+  EXPECT_TRUE(holds_soon([&] { return status_of(get("/body")) == 200; }));
+}
+
+TEST_F(FrontTest, DropsReadersWhoDoNotTakeAHeldBodyInTime) {
+  FrontOptions options;
+  options.limits.rate_window = 300ms;
+  options.limits.bytes_per_second = 1;
+  options.limits.hold_time = 1s;
+  start(options);
+  RawClient streaming(port_, 4096), holding(port_, 4096);
+  streaming.send("GET /large HTTP/1.1\r\nHost: a\r\n\r\n");
+  holding.send("GET /body HTTP/1.1\r\nHost: a\r\n\r\n");
+  for (int i = 0; i < 8; ++i) {
+    streaming.read_bytes(40'000);
+    holding.read_bytes(40'000);
+    std::this_thread::sleep_for(100ms);
+  }
+  EXPECT_LT(holding.read_all().size(), kLargeBytes / 2);
+  EXPECT_GT(streaming.read_all().size(), kLargeBytes / 2);
 }
 
 TEST_F(FrontTest, DeliversLargeStreamsWhole) {
@@ -593,8 +648,8 @@ TEST_F(FrontTest, DrainEndsPendingAnswersThatCanEndEarly) {
 TEST_F(FrontTest, StopBreaksUploadsAndStreams) {
   start();
   RawClient uploading(port_), streaming(port_);
-  uploading.send("POST /upload HTTP/1.1\r\nHost: a\r\nContent-Length: 4\r\nExpect: 100-continue\r\n\r\n");
-  EXPECT_EQ(status_of(uploading.read_head()), 100);
+  uploading.send("POST /upload HTTP/1.1\r\nHost: a\r\nContent-Length: 50000\r\n\r\n" + std::string(kUploadStart, 'x'));
+  EXPECT_TRUE(holds_soon([&] { return uploading_ == 1; }));
   streaming.send("GET /tap HTTP/1.1\r\nHost: a\r\n\r\n");
   streaming.read_head();
   front_->stop();

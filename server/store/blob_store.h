@@ -1,12 +1,15 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/base/result.h"
@@ -26,10 +29,24 @@ class StagedFile {
   virtual const std::filesystem::path& path() const = 0;
 };
 
-/// Immutable blobs by name: what a restart must remember. Any thread, any number of processes on one store.
+/// The bytes of a blob, and what tells them from any other bytes it may have later (an ETag).
+struct VersionedBlob {
+  std::vector<std::byte> bytes;
+  std::string version;
+};
+
+struct BlobInfo {
+  BlobKey key;
+  std::uint64_t bytes = 0;                     ///< that it takes in the store
+  std::chrono::system_clock::time_point used;  ///< when it was last written or touched
+};
+
+/// Blobs by name: what a restart must remember. Any thread, any number of processes on one store.
 ///
-/// put and commit are atomic and durable: when they return, the blob survives a crash, and no reader ever sees a part
-/// of it. Putting a name again replaces it (with equal bytes, as names are made of content).
+/// put, put_if and commit are atomic and durable: when they return, the blob survives a crash, and no reader ever sees
+/// a part of it. Most blobs are immutable: putting their name again replaces them with equal bytes. The few that change
+/// (sidecars, run records) are changed with put_if alone, so that no process undoes what another did. Nothing here asks
+/// for more than an object store has: conditional put, copy onto itself for touch(), times of last change.
 class BlobStore {
  public:
   virtual ~BlobStore() = default;
@@ -38,12 +55,22 @@ class BlobStore {
   virtual Result<void> put(const BlobKey& key, std::span<const std::byte> bytes) = 0;
   /// The whole blob, its checksum verified. For documents and parts (up to some MB).
   ///
-  /// errors   not_found.  malformed_input: damaged.  unavailable.
+  /// errors   not_found.  internal: damaged.  unavailable.
   virtual Result<std::vector<std::byte>> get(const BlobKey& key) const = 0;
+  /// The same with its version, for put_if.
+  virtual Result<VersionedBlob> get_versioned(const BlobKey& key) const = 0;
+  /// Puts if the blob has still this version; "" = if it is not there.
+  ///
+  /// returns  false: it has another one, and nothing was changed.  errors: as put; internal: what is there is damaged.
+  virtual Result<bool> put_if(const BlobKey& key, std::span<const std::byte> bytes, const std::string& version) = 0;
   virtual Result<bool> exists(const BlobKey& key) const = 0;
   /// Keys that start with `prefix` (which ends with "/", or is empty), sorted; at most `limit`, those after `after`.
   virtual Result<std::vector<BlobKey>> list(std::string_view prefix, std::string_view after,
                                             std::size_t limit) const = 0;
+  /// All blobs below `prefix` with their sizes and times, in the order of keys.
+  virtual Result<std::vector<BlobInfo>> inventory(std::string_view prefix) const = 0;
+  /// Says that a blob was used just now, if it is there. Not durable, and nobody waits for it.
+  virtual void touch(const BlobKey& key) = 0;
   /// Names directly below `prefix` (which ends with "/"): files, and folders with a blob somewhere below, sorted.
   virtual Result<std::vector<std::string>> children(std::string_view prefix) const = 0;
   /// Durable, too. Removing what is not there succeeds.
@@ -53,10 +80,26 @@ class BlobStore {
   /// errors: no_space, unavailable.
   virtual Result<std::unique_ptr<StagedFile>> stage() = 0;
   /// fsync, rename, fsync of the folder. The file carries checksums of its own (bricks); get() does not read it and
-  /// calls it malformed_input. errors: as put; the file is gone in any case.
+  /// calls it damaged. errors: as put; the file is gone in any case.
   virtual Result<void> commit(std::unique_ptr<StagedFile> file, const BlobKey& key) = 0;
   /// Local file behind a committed key (not one that was put), to be mapped read-only. errors: not_found.
   virtual Result<std::filesystem::path> local_file(const BlobKey& key) const = 0;
+
+  /// A name for this process that no other one on this store has or had, of key characters.
+  virtual std::string process_name() const = 0;
+  /// False only when the process of that name has certainly ended; true where the store cannot tell.
+  virtual bool may_be_running(const std::string& process) const = 0;
+
+  /// Called with every damage that is found, from any thread; set before the store is used. A store that finds one
+  /// reports it by itself; files that carry checksums of their own are reported by whoever reads them.
+  using DamageListener = std::function<void(const BlobKey& key, const std::string& why)>;
+  void on_damage(DamageListener listener) { listener_ = std::move(listener); }
+  void report_damage(const BlobKey& key, const std::string& why) const {
+    if (listener_) listener_(key, why);
+  }
+
+ private:
+  DamageListener listener_;
 };
 
 }  // namespace geosis::server

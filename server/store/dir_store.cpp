@@ -2,15 +2,18 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <limits>
 #include <string>
 #include <system_error>
 #include <utility>
 
 #include <fcntl.h>
 
+#include "server/store/blob_file.h"
 #include "server/store/blob_key.h"
 #include "server/store/blob_trailer.h"
 #include "server/store/folder_tree.h"
+#include "server/store/key_locks.h"
 #include "server/store/key_walk.h"
 #include "server/store/open_file.h"
 #include "server/store/staging_area.h"
@@ -28,35 +31,45 @@ Error no_such_blob(const BlobKey& key) {
   return {ErrorCode::not_found, "no blob \"" + key + "\""};
 }
 
-Error damaged(const BlobKey& key, const Error& why) {
-  return {why.code, "blob \"" + key + "\" is damaged: " + why.message};
+/// Equal bytes have the same version, so a change there and back is not seen: what changes names whoever changed it.
+std::string version_of(std::span<const std::byte> bytes) {
+  const BlobTrailer trailer = trailer_of(bytes);
+  return std::to_string(trailer.length) + "-" + std::to_string(trailer.checksum);
 }
 
 class DirStore final : public BlobStore {
  public:
   DirStore(FileCalls& calls, const fs::path& root, std::unique_ptr<StagingArea> staging)
-      : calls_(calls), objects_(root / "objects"), folders_(calls, objects_), staging_(std::move(staging)) {}
+      : calls_(calls),
+        objects_(root / "objects"),
+        folders_(calls, objects_),
+        locks_(calls, root / "locks"),
+        staging_(std::move(staging)) {}
 
   Result<void> put(const BlobKey& key, std::span<const std::byte> bytes) override;
   Result<std::vector<std::byte>> get(const BlobKey& key) const override;
+  Result<VersionedBlob> get_versioned(const BlobKey& key) const override;
+  Result<bool> put_if(const BlobKey& key, std::span<const std::byte> bytes, const std::string& version) override;
   Result<bool> exists(const BlobKey& key) const override;
   Result<std::vector<BlobKey>> list(std::string_view prefix, std::string_view after, std::size_t limit) const override;
+  Result<std::vector<BlobInfo>> inventory(std::string_view prefix) const override;
+  void touch(const BlobKey& key) override;
   Result<std::vector<std::string>> children(std::string_view prefix) const override;
   Result<void> remove(const BlobKey& key) override;
   Result<std::unique_ptr<StagedFile>> stage() override { return staging_->stage(); }
   Result<void> commit(std::unique_ptr<StagedFile> file, const BlobKey& key) override;
   Result<fs::path> local_file(const BlobKey& key) const override;
+  std::string process_name() const override { return staging_->process_name(); }
+  bool may_be_running(const std::string& process) const override { return staging_->may_be_running(process); }
 
  private:
-  Result<void> write(const fs::path& path, std::span<const std::byte> bytes);
-  Result<void> flush(const fs::path& path);
   Result<void> place(const StagedFile& file, const BlobKey& key);
   Result<void> move(const fs::path& staged, const fs::path& target);
-  Result<std::vector<std::byte>> read(OpenFile& file, const BlobKey& key) const;
 
   FileCalls& calls_;
   const fs::path objects_;
   FolderTree folders_;
+  KeyLocks locks_;
   std::unique_ptr<StagingArea> staging_;
 };
 
@@ -64,31 +77,30 @@ Result<void> DirStore::put(const BlobKey& key, std::span<const std::byte> bytes)
   if (auto checked = check_key(key); !checked) return checked;
   const auto file = staging_->stage();
   if (!file) return file.error();
-  if (auto written = write((*file)->path(), bytes); !written) return written;
+  if (auto written = write_blob_file(calls_, (*file)->path(), bytes); !written) return written;
   return place(**file, key);
+}
+
+Result<bool> DirStore::put_if(const BlobKey& key, std::span<const std::byte> bytes, const std::string& version) {
+  if (auto checked = check_key(key); !checked) return std::move(checked).error();
+  const auto file = staging_->stage();
+  if (!file) return file.error();
+  if (auto written = write_blob_file(calls_, (*file)->path(), bytes); !written) return std::move(written).error();
+  const auto turn = locks_.take(key);
+  if (!turn) return turn.error();
+  const auto now = get_versioned(key);
+  if (!now && now.error().code != ErrorCode::not_found) return now.error();
+  if ((now ? now->version : "") != version) return false;
+  if (auto placed = place(**file, key); !placed) return std::move(placed).error();
+  return true;
 }
 
 Result<void> DirStore::commit(std::unique_ptr<StagedFile> file, const BlobKey& key) {
   if (auto checked = check_key(key); !checked) return checked;
   if (!file || !staging_->owns(*file))
     return Error{ErrorCode::invalid_argument, "the file for \"" + key + "\" was not staged in this store"};
-  if (auto flushed = flush(file->path()); !flushed) return flushed;
+  if (auto flushed = flush_file(calls_, file->path()); !flushed) return flushed;
   return place(*file, key);
-}
-
-Result<void> DirStore::write(const fs::path& path, std::span<const std::byte> bytes) {
-  OpenFile file(calls_, calls_.open(path.c_str(), O_WRONLY, 0));
-  const auto trailer = encode_trailer(trailer_of(bytes));
-  const bool done = file.is_open() && file.write_all(bytes) == 0 && file.write_all(trailer) == 0 &&
-                    calls_.fsync(file.descriptor()) == 0 && file.close() == 0;
-  if (!done) return file_error(path, "cannot write", errno);
-  return {};
-}
-
-Result<void> DirStore::flush(const fs::path& path) {
-  OpenFile file(calls_, calls_.open(path.c_str(), O_RDONLY, 0));
-  if (!file.is_open() || calls_.fsync(file.descriptor()) != 0) return file_error(path, "cannot flush", errno);
-  return {};
 }
 
 // Moves a flushed file to its key and makes that durable. When that fails, a key that was not there before is not there
@@ -120,27 +132,19 @@ Result<void> DirStore::move(const fs::path& staged, const fs::path& target) {
 
 Result<std::vector<std::byte>> DirStore::get(const BlobKey& key) const {
   if (auto checked = check_key(key); !checked) return checked.error();
-  const fs::path path = objects_ / key;
-  OpenFile file(calls_, calls_.open(path.c_str(), O_RDONLY, 0));
-  if (file.is_open()) return read(file, key);
-  if (errno == ENOENT || errno == ENOTDIR) return no_such_blob(key);
-  return file_error(path, "cannot read", errno);
+  auto bytes = read_blob_file(calls_, objects_ / key);
+  if (bytes) return bytes;
+  if (bytes.error().code == ErrorCode::not_found) return no_such_blob(key);
+  if (bytes.error().code != ErrorCode::malformed_input) return bytes;
+  report_damage(key, bytes.error().message);
+  return Error{ErrorCode::internal, "blob \"" + key + "\" is damaged: " + bytes.error().message};
 }
 
-Result<std::vector<std::byte>> DirStore::read(OpenFile& file, const BlobKey& key) const {
-  struct stat status {};
-  if (calls_.fstat(file.descriptor(), &status) != 0) return file_error(objects_ / key, "cannot read", errno);
-  if (!S_ISREG(status.st_mode)) return no_such_blob(key);
-  const auto file_bytes = static_cast<std::uint64_t>(status.st_size);
-  BlobTrailer::Bytes trailer_bytes{};
-  if (file_bytes >= BlobTrailer::kBytes && file.read_all(trailer_bytes, file_bytes - BlobTrailer::kBytes) != 0)
-    return file_error(objects_ / key, "cannot read", errno);
-  const auto trailer = decode_trailer(trailer_bytes, file_bytes);
-  if (!trailer) return damaged(key, trailer.error());
-  std::vector<std::byte> payload(trailer->length);
-  if (file.read_all(payload, 0) != 0) return file_error(objects_ / key, "cannot read", errno);
-  if (auto checked = check_payload(payload, *trailer); !checked) return damaged(key, checked.error());
-  return payload;
+Result<VersionedBlob> DirStore::get_versioned(const BlobKey& key) const {
+  auto bytes = get(key);
+  if (!bytes) return std::move(bytes).error();
+  std::string version = version_of(*bytes);
+  return VersionedBlob{*std::move(bytes), std::move(version)};
 }
 
 Result<bool> DirStore::exists(const BlobKey& key) const {
@@ -163,7 +167,21 @@ Result<std::vector<BlobKey>> DirStore::list(std::string_view prefix, std::string
   if (auto checked = check_prefix(prefix); !checked) return checked.error();
   KeyWalk walk(calls_, objects_, after, limit);
   if (auto added = walk.add(std::string(prefix)); !added) return added.error();
-  return std::move(walk.keys());
+  std::vector<BlobKey> keys;
+  keys.reserve(walk.blobs().size());
+  for (BlobInfo& blob : walk.blobs()) keys.push_back(std::move(blob.key));
+  return keys;
+}
+
+Result<std::vector<BlobInfo>> DirStore::inventory(std::string_view prefix) const {
+  if (auto checked = check_prefix(prefix); !checked) return checked.error();
+  KeyWalk walk(calls_, objects_, "", std::numeric_limits<std::size_t>::max());
+  if (auto added = walk.add(std::string(prefix)); !added) return std::move(added).error();
+  return std::move(walk.blobs());
+}
+
+void DirStore::touch(const BlobKey& key) {
+  if (check_key(key)) calls_.utimens_now((objects_ / key).c_str());
 }
 
 Result<std::vector<std::string>> DirStore::children(std::string_view prefix) const {
@@ -186,6 +204,8 @@ Result<std::vector<std::string>> DirStore::children(std::string_view prefix) con
 // Flushes also when nothing was there: an earlier removal may have failed at exactly that.
 Result<void> DirStore::remove(const BlobKey& key) {
   if (auto checked = check_key(key); !checked) return checked;
+  const auto turn = locks_.take(key);
+  if (!turn) return turn.error();
   const fs::path path = objects_ / key;
   if (calls_.unlink(path.c_str()) != 0 && errno != ENOENT && errno != ENOTDIR && errno != EISDIR)
     return file_error(path, "cannot remove", errno);
@@ -211,7 +231,7 @@ Result<std::unique_ptr<BlobStore>> open_dir_store(const fs::path& root, FileCall
   fs::path absolute = fs::absolute(root, problem).lexically_normal();
   if (problem) return file_error(root, "cannot open this folder", problem.value());
   if (!absolute.has_filename()) absolute = absolute.parent_path();  // "store/"
-  for (const char* name : {"objects", "staging"})
+  for (const char* name : {"objects", "staging", "locks"})
     if (auto made = make_durable_folder(calls, absolute / name); !made) return made.error();
   auto staging = StagingArea::open(calls, absolute / "staging");
   if (!staging) return std::move(staging).error();

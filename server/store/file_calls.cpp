@@ -21,6 +21,12 @@ auto until_not_interrupted(Call call) {
   return result;
 }
 
+std::chrono::system_clock::time_point time_of(const timespec& time) {
+  const auto since_epoch = std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
+  return std::chrono::system_clock::time_point(
+      std::chrono::duration_cast<std::chrono::system_clock::duration>(since_epoch));
+}
+
 struct CloseFolder {
   void operator()(DIR* folder) const { closedir(folder); }
 };
@@ -68,6 +74,10 @@ int FileCalls::statx(int descriptor, unsigned int mask, struct statx* status) {
   return ::statx(descriptor, "", AT_EMPTY_PATH, mask, status);
 }
 
+int FileCalls::utimens_now(const char* path) {
+  return ::utimensat(AT_FDCWD, path, nullptr, AT_SYMLINK_NOFOLLOW);
+}
+
 int FileCalls::rename(const char* from, const char* to) {
   return ::rename(from, to);
 }
@@ -102,7 +112,11 @@ int FileCalls::list_folder(const char* path, std::vector<FolderEntry>& entries) 
       if (errno == ENOENT) continue;  // removed meanwhile
       return -1;
     }
-    entries.push_back({std::string(name), S_ISREG(status.st_mode), S_ISDIR(status.st_mode)});
+    entries.push_back({.name = std::string(name),
+                       .is_file = S_ISREG(status.st_mode),
+                       .is_folder = S_ISDIR(status.st_mode),
+                       .bytes = static_cast<std::uint64_t>(status.st_size),
+                       .modified = time_of(status.st_mtim)});
   }
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,6 +15,8 @@ struct FolderEntry {
   std::string name;
   bool is_file = false;  ///< a regular file; a symbolic link is neither
   bool is_folder = false;
+  std::uint64_t bytes = 0;
+  std::chrono::system_clock::time_point modified{};
 };
 
 /// The system calls behind a directory store, each with the kernel's meaning: -1 and errno on failure. Interrupted
@@ -31,6 +35,7 @@ class FileCalls {
   virtual int stat(const char* path, struct stat* status);
   virtual int lstat(const char* path, struct stat* status);
   virtual int statx(int descriptor, unsigned int mask, struct statx* status);
+  virtual int utimens_now(const char* path);  ///< sets the times of a file to the present
   virtual int rename(const char* from, const char* to);
   virtual int unlink(const char* path);
   virtual int mkdir(const char* path, mode_t mode);

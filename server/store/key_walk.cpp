@@ -34,9 +34,9 @@ Result<void> KeyWalk::add(const std::string& prefix) {
   const auto entries = key_entries(calls_, objects_ / prefix);
   if (!entries) return entries.error();
   for (const auto& entry : *entries) {
-    if (keys_.size() >= limit_) break;
+    if (blobs_.size() >= limit_) break;
     const std::string key = prefix + sort_key(entry);
-    if (entry.is_file && key > after_) keys_.push_back(key);
+    if (entry.is_file && key > after_) blobs_.push_back({key, entry.bytes, entry.modified});
     const bool has_later_keys = key > after_ || after_.starts_with(key);
     if (!entry.is_folder || !has_later_keys) continue;
     if (auto added = add(key); !added) return added;

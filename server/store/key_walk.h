@@ -18,22 +18,22 @@ namespace geosis::server {
 /// errors   unavailable.
 Result<std::vector<FolderEntry>> key_entries(FileCalls& calls, const std::filesystem::path& folder);
 
-/// Collects keys in ascending order from a folder of blobs, without looking at more folders than needed.
+/// Collects blobs in ascending order from a folder of blobs, without looking at more folders than needed.
 class KeyWalk {
  public:
   KeyWalk(FileCalls& calls, const std::filesystem::path& objects, std::string_view after, std::size_t limit)
       : calls_(calls), objects_(objects), after_(after), limit_(limit) {}
 
-  /// Adds the keys below `prefix` ("" or ends with "/"). errors: unavailable.
+  /// Adds the blobs below `prefix` ("" or ends with "/"). errors: unavailable.
   Result<void> add(const std::string& prefix);
-  std::vector<BlobKey>& keys() { return keys_; }
+  std::vector<BlobInfo>& blobs() { return blobs_; }
 
  private:
   FileCalls& calls_;
   const std::filesystem::path& objects_;
   std::string_view after_;
   std::size_t limit_;
-  std::vector<BlobKey> keys_;
+  std::vector<BlobInfo> blobs_;
 };
 
 }  // namespace geosis::server

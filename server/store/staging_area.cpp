@@ -8,6 +8,8 @@
 #include <fcntl.h>
 #include <sys/file.h>
 
+#include "server/store/blob_key.h"
+
 namespace geosis::server {
 namespace {
 
@@ -77,6 +79,14 @@ StagingArea::StagingArea(FileCalls& calls, fs::path folder, OpenFile lock)
 
 StagingArea::~StagingArea() {
   remove_flat_folder(calls_, folder_);
+}
+
+bool StagingArea::may_be_running(const std::string& process) const {
+  if (process == process_name()) return true;
+  if (!is_key_segment(process)) return false;  // no folder is called so
+  const OpenFile folder = open_folder(calls_, folder_.parent_path() / process);
+  if (!folder.is_open()) return errno != ENOENT;
+  return calls_.flock(folder.descriptor(), LOCK_SH | LOCK_NB) != 0;
 }
 
 Result<std::unique_ptr<StagedFile>> StagingArea::stage() {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <string>
 
 #include "engine/base/result.h"
 #include "server/store/blob_store.h"
@@ -25,6 +26,10 @@ class StagingArea {
 
   /// A new, empty file. errors: no_space, unavailable.
   Result<std::unique_ptr<StagedFile>> stage();
+  /// The name of this process's folder, and so of the process.
+  std::string process_name() const { return folder_.filename().string(); }
+  /// False when nobody locks the folder of that name, or there is none.
+  bool may_be_running(const std::string& process) const;
   bool owns(const StagedFile& file) const { return file.path().parent_path() == folder_; }
 
  private:

@@ -55,6 +55,59 @@ TEST_P(BlobStoreTest, PutReplaces) {
   EXPECT_EQ(get("t/a"), "second, longer");
 }
 
+TEST_P(BlobStoreTest, AConditionalPutNeedsTheVersionThatIsThere) {
+  EXPECT_FALSE(store_->put_if("t/a", bytes_of("one"), "some version").value());
+  EXPECT_EQ(store_->get_versioned("t/a").error().code, ErrorCode::not_found);
+  EXPECT_TRUE(store_->put_if("t/a", bytes_of("one"), "").value());
+  EXPECT_FALSE(store_->put_if("t/a", bytes_of("two"), "").value());
+  const VersionedBlob first = store_->get_versioned("t/a").value();
+  EXPECT_EQ(text_of(first.bytes), "one");
+  EXPECT_TRUE(store_->put_if("t/a", bytes_of("two"), first.version).value());
+  EXPECT_FALSE(store_->put_if("t/a", bytes_of("three"), first.version).value());
+  EXPECT_EQ(get("t/a"), "two");
+  ASSERT_TRUE(store_->remove("t/a"));
+  EXPECT_FALSE(store_->put_if("t/a", bytes_of("four"), first.version).value());
+  EXPECT_FALSE(store_->exists("t/a").value());
+}
+
+TEST_P(BlobStoreTest, NoConditionalChangeIsLost) {
+  put("t/count", "0");
+  std::vector<std::jthread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([this] {
+      for (int added = 0; added < 10;) {
+        const VersionedBlob now = store_->get_versioned("t/count").value();
+        const std::string next = std::to_string(std::stoi(text_of(now.bytes)) + 1);
+        if (store_->put_if("t/count", bytes_of(next), now.version).value()) ++added;
+      }
+    });
+  }
+  threads.clear();
+  EXPECT_EQ(get("t/count"), "40");
+}
+
+TEST_P(BlobStoreTest, TheInventoryTellsSizesAndLastUses) {
+  put("t/a", std::string(1000, 'a'));
+  put("t/b/c", "c");
+  auto blobs = store_->inventory("t/").value();
+  ASSERT_EQ(blobs.size(), 2u);
+  EXPECT_EQ(blobs[0].key, "t/a");
+  EXPECT_GE(blobs[0].bytes, 1000u);
+  EXPECT_LT(blobs[0].bytes, 1100u);
+  EXPECT_EQ(blobs[1].key, "t/b/c");
+  const auto before = blobs[0].used;
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  store_->touch("t/a");
+  store_->touch("t/none");
+  EXPECT_GT(store_->inventory("t/").value()[0].used, before);
+  EXPECT_FALSE(store_->exists("t/none").value());
+}
+
+TEST_P(BlobStoreTest, ProcessesAreKnownByName) {
+  EXPECT_TRUE(store_->may_be_running(store_->process_name()));
+  EXPECT_FALSE(store_->may_be_running("process-000000"));
+}
+
 TEST_P(BlobStoreTest, AnAbsentBlobIsNotFound) {
   put("t/a/b");
   for (const char* key : {"t/none", "none/x", "t/a", "t/a/b/c"}) {
@@ -159,7 +212,7 @@ TEST_P(BlobStoreTest, ACommittedFileIsALocalFile) {
   ASSERT_TRUE(store_->commit(std::move(file), "t/v/bricks"));
   EXPECT_EQ(read_file(store_->local_file("t/v/bricks").value()), "bricks");
   EXPECT_EQ(store_->list("", "", 9).value(), Keys{"t/v/bricks"});
-  EXPECT_EQ(store_->get("t/v/bricks").error().code, ErrorCode::malformed_input);
+  EXPECT_EQ(store_->get("t/v/bricks").error().code, ErrorCode::internal);
   ASSERT_TRUE(store_->remove("t/v/bricks"));
   EXPECT_FALSE(store_->exists("t/v/bricks").value());
 }

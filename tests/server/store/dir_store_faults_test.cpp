@@ -52,6 +52,7 @@ class FailingCalls final : public FileCalls {
   int statx(int descriptor, unsigned int mask, struct statx* status) override {
     return fails() ? -1 : FileCalls::statx(descriptor, mask, status);
   }
+  int utimens_now(const char* path) override { return fails() ? -1 : FileCalls::utimens_now(path); }
   int rename(const char* from, const char* to) override { return fails() ? -1 : FileCalls::rename(from, to); }
   int unlink(const char* path) override { return fails() ? -1 : FileCalls::unlink(path); }
   int mkdir(const char* path, mode_t mode) override { return fails() ? -1 : FileCalls::mkdir(path, mode); }
@@ -129,6 +130,28 @@ TEST_F(DirStoreFaultsTest, AReplacementThatFailsLeavesTheOldOrTheNewBlob) {
       [&](const Result<void>& done) {
         const std::string left = text_of(store->get(kKey).value());
         EXPECT_TRUE(left == "new, and longer" || (!done && left == "old")) << left;
+      });
+}
+
+TEST_F(DirStoreFaultsTest, AConditionalPutThatFailsLeavesTheOldOrTheNewBlob) {
+  const auto store = open();
+  std::string version;
+  for_each_call(
+      ENOSPC,
+      [&] {
+        ASSERT_TRUE(store->put(kKey, bytes_of("old")));
+        version = store->get_versioned(kKey).value().version;
+      },
+      [&]() -> Result<void> {
+        const auto done = store->put_if(kKey, bytes_of("new, and longer"), version);
+        if (!done) return done.error();
+        EXPECT_TRUE(*done);
+        return {};
+      },
+      [&](const Result<void>& done) {
+        const std::string left = text_of(store->get(kKey).value());
+        EXPECT_TRUE(left == "new, and longer" || (!done && left == "old")) << left;
+        EXPECT_TRUE(done || done.error().code == ErrorCode::no_space) << done.error().message;
       });
 }
 

@@ -63,7 +63,9 @@ Reply change(Services services, const Request& request) {
 
 Reply remove(Services services, const Request& request) {
   const std::string& id = request.captures[0];
-  if (auto known = services.volumes.document(id); !known) return error_reply(known.error());
+  // A damaged one cannot be shown but can be removed.
+  if (auto known = services.volumes.document(id); !known && known.error().code != ErrorCode::internal)
+    return error_reply(known.error());
   if (auto purged = services.extractions.purge_results_of(id); !purged) return error_reply(purged.error());
   if (auto removed = services.volumes.remove(id); !removed) return error_reply(removed.error());
   Reply reply;

@@ -1,7 +1,10 @@
 #include "server/app/volumes.h"
 
 #include <algorithm>
+#include <atomic>
+#include <fstream>
 #include <numeric>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -128,6 +131,95 @@ TEST_F(VolumesTest, HistogramAndSliceReadTheSamples) {
   ASSERT_TRUE(slice);
   EXPECT_EQ(slice->samples.size(), 400u);
   EXPECT_EQ(service.volumes.slice(id, SliceAxis::sample, 20).error().code, ErrorCode::invalid_argument);
+}
+
+/// Files below a volume's folder that are not volume.json.
+std::size_t data_blobs(const BlobStore& store, const std::string& id) {
+  return store.list("default/volumes/" + id + "/data/", "", 100)->size();
+}
+
+void flip_a_bit(const std::filesystem::path& path, std::streamoff from_end) {
+  std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekg(-from_end, std::ios::end);
+  const int byte = file.get();
+  file.seekp(-from_end, std::ios::end);
+  file.put(static_cast<char>(byte ^ 4));
+}
+
+TEST_F(VolumesTest, OfEqualUploadsAtOneTimeByTwoServersOneIsKept) {
+  Service other(*store);
+  std::atomic<int> made{0};
+  {
+    std::vector<std::jthread> clients;
+    for (int n = 0; n < 8; ++n) {
+      clients.emplace_back([&, n] {
+        NoProgress progress;
+        std::vector<GridCandidate> none;
+        const auto added =
+            (n % 2 ? service : other).volumes.add(*memory_source(ball_file(5)), ball_options(), progress, none);
+        ASSERT_TRUE(added) << added.error().message;
+        made += added->is_new;
+      });
+    }
+  }
+  EXPECT_EQ(made, 1);
+  const Json page = *service.volumes.list(10, "");
+  ASSERT_EQ(page.at("volumes").size(), 1u);
+  EXPECT_EQ(data_blobs(*store, page["volumes"][0]["id"]), 2u);  // of the one upload that counts
+}
+
+TEST_F(VolumesTest, ChangesByTwoServersAreAllKept) {
+  Service other(*store);
+  const std::string id = service.add_ball();
+  for (int round = 0; round < 10; ++round) {
+    const std::string text = std::to_string(round);
+    std::jthread first([&] { EXPECT_TRUE(service.volumes.change(id, {{"name", text}})); });
+    std::jthread second([&] { EXPECT_TRUE(other.volumes.change(id, {{"crs", text}})); });
+    first.join();
+    second.join();
+    const Json now = *service.volumes.document(id);
+    EXPECT_EQ(now.at("name"), text);
+    EXPECT_EQ(now.at("crs"), text);
+  }
+}
+
+TEST_F(VolumesTest, RemovedByAnotherServerIsGoneHereToo) {
+  Service other(*store);
+  const std::string id = service.add_ball();
+  ASSERT_TRUE(service.volumes.open(id));
+  ASSERT_TRUE(other.volumes.remove(id));
+  EXPECT_EQ(service.volumes.open(id).error().code, ErrorCode::not_found);
+  EXPECT_EQ(service.volumes.change(id, {{"name", "x"}}).error().code, ErrorCode::not_found);
+  EXPECT_TRUE(store->list("", "", 10)->empty());
+}
+
+TEST_F(VolumesTest, WhatADeadUploadLeftIsCollectedAndNothingElse) {
+  const std::string id = service.add_ball();
+  const std::string folder = "default/volumes/" + id + "/data/";
+  ASSERT_TRUE(store->put(folder + "process-000000.1/sidecar.json", {}));
+  ASSERT_TRUE(store->commit(*store->stage(), folder + "process-000000.1/bricks"));
+  ASSERT_TRUE(
+      store->commit(*store->stage(), "default/volumes/" + std::string(64, 'e') + "/data/process-000000.2/bricks"));
+  ASSERT_TRUE(service.volumes.collect_garbage());
+  EXPECT_EQ(store->list("default/volumes/", "", 10)->size(), 3u);
+  EXPECT_TRUE(service.volumes.open(id));
+}
+
+TEST_F(VolumesTest, DamageIsReportedAsOursAndMendedByTheNextUpload) {
+  std::vector<std::string> reports;
+  store->on_damage([&](const BlobKey& key, const std::string&) { reports.push_back(key); });
+  const std::string id = service.add_ball();
+  ASSERT_TRUE(service.volumes.slice(id, SliceAxis::sample, 10));  // the brick was found sound
+  const auto bricks = store->local_file(store->list("default/volumes/" + id + "/data/", "", 1)->front());
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // a file system's clock may be that coarse
+  flip_a_bit(*bricks, 12345);
+  const auto slice = service.volumes.slice(id, SliceAxis::sample, 10);
+  ASSERT_FALSE(slice);
+  EXPECT_EQ(slice.error().code, ErrorCode::internal) << slice.error().message;
+  EXPECT_EQ(reports.size(), 1u);
+  service.add_ball();
+  EXPECT_TRUE(service.volumes.slice(id, SliceAxis::sample, 10));
+  EXPECT_EQ(data_blobs(*store, id), 2u);
 }
 
 }  // namespace

@@ -27,98 +27,82 @@ Extraction::Snapshot Extraction::snapshot() const {
   now.levels = levels_;
   now.manifest = manifest_;
   now.timings = timings_;
-  if (job_) {
-    JobStatus status = job_->status();
-    now.state = status.state;
-    now.stage = std::move(status.stage);
-    now.progress = status.progress;
-    now.error = std::move(status.error);
-  }
-  if (cancelled_) now.state = JobState::cancelled;
-  if (manifest_) {  // the manifest is the truth, a moment before the job says so
+  JobStatus status = face_->status();
+  now.state = status.state;
+  now.stage = std::move(status.stage);
+  now.progress = status.progress;
+  now.error = std::move(status.error);
+  if (manifest_) {  // the manifest is the truth, a moment before the face says so
     now.state = JobState::done;
     now.progress = 1;
+    now.error.reset();
   }
   return now;
 }
 
 Job::Subscription Extraction::subscribe(std::function<void()> bell) {
-  const std::lock_guard lock(mutex_);
-  return job_ && !manifest_ ? job_->subscribe(std::move(bell)) : Job::Subscription{};
+  return has_ended() ? Job::Subscription{} : face_->subscribe(std::move(bell));
 }
 
-void Extraction::wait_for(std::chrono::milliseconds time) const {
-  std::shared_ptr<Job> job;
+void Extraction::abandon() {
+  if (!is_stored_)
+    cancel();
+  else if (!is_cancelled())  // of one that is ending no interest is left to take
+    ++abandoned_;
+}
+
+void Extraction::set_work(std::shared_ptr<Job> work) {
+  const std::lock_guard lock(mutex_);
+  work_ = std::move(work);
+}
+
+void Extraction::stop_work() {
+  std::shared_ptr<Job> work;
   {
     const std::lock_guard lock(mutex_);
-    job = job_;
+    work = work_;
   }
-  if (job) job->wait_for(time);
+  if (work) work->request_cancel();
 }
 
-bool Extraction::has_ended() const {
-  const std::lock_guard lock(mutex_);
-  return manifest_ || cancelled_ || (job_ && is_final(job_->status().state));
+bool Extraction::wait_for_work(std::chrono::milliseconds time) const {
+  std::shared_ptr<Job> work;
+  {
+    const std::lock_guard lock(mutex_);
+    work = work_;
+  }
+  return !work || work->wait_for(time);
 }
 
-void Extraction::set_job(std::shared_ptr<Job> job) {
-  const std::lock_guard lock(mutex_);
-  job_ = std::move(job);
+void Extraction::report(const char* stage, double fraction) {
+  face_->set_running();
+  face_->report(stage, fraction);
 }
 
 void Extraction::add_level(Json entry) {
-  std::shared_ptr<Job> job;
   {
     const std::lock_guard lock(mutex_);
+    for (const Json& known : levels_) {
+      if (known.at("level") == entry.at("level")) return;
+    }
     levels_.push_back(std::move(entry));
-    job = job_;
   }
-  if (job) job->ring();
+  face_->ring();
 }
 
 void Extraction::complete(Json manifest, std::optional<ExtractionTimings> timings) {
-  std::shared_ptr<Job> job;
   {
     const std::lock_guard lock(mutex_);
     levels_.assign(manifest.at("levels").rbegin(), manifest.at("levels").rend());
     manifest_ = std::move(manifest);
     timings_ = std::move(timings);
-    job = job_;
   }
-  if (job) job->ring();
-}
-
-void Extraction::set_cancelled() {
-  const std::lock_guard lock(mutex_);
-  cancelled_ = true;
-}
-
-bool Extraction::add_interest() {
-  const std::lock_guard lock(mutex_);
-  if (ending_) return false;
-  ++interest_;
-  return true;
-}
-
-bool Extraction::withdraw_interest() {
-  const std::lock_guard lock(mutex_);
-  if (interest_ > 0) --interest_;
-  if (interest_ > 0 || manifest_ || !job_ || is_final(job_->status().state)) return false;
-  return ending_ = true;
+  face_->finish({});
 }
 
 void Extraction::cancel() {
-  std::shared_ptr<Job> job;
-  {
-    const std::lock_guard lock(mutex_);
-    job = job_;
-  }
-  if (job) job->request_cancel();
-}
-
-bool Extraction::is_ending() const {
-  const std::lock_guard lock(mutex_);
-  return (cancelled_ || ending_ || (job_ && job_->cancelled())) && !manifest_;
+  stop_work();
+  face_->request_cancel();
 }
 
 Json resource_document(const Extraction& extraction) {

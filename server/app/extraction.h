@@ -1,10 +1,13 @@
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/base/result.h"
@@ -39,7 +42,9 @@ class Extraction {
     std::optional<ExtractionTimings> timings;
   };
 
-  Extraction(Identity identity, PartReader parts) : identity_(std::move(identity)), parts_(std::move(parts)) {}
+  /// is_stored   true: the store has it, and interest in it is the store's to count. False: it lives and dies here.
+  Extraction(Identity identity, PartReader parts, bool is_stored = true)
+      : identity_(std::move(identity)), parts_(std::move(parts)), is_stored_(is_stored) {}
 
   const Identity& identity() const { return identity_; }
   Result<std::vector<std::byte>> read_part(int level, int part) const { return parts_(level, part); }
@@ -47,38 +52,60 @@ class Extraction {
   Snapshot snapshot() const;
   /// Rings after every change until the subscription ends; at once never. No bell for what is final already.
   Job::Subscription subscribe(std::function<void()> bell);
-  void wait_for(std::chrono::milliseconds time) const;
+  /// Waits until it has ended or the time is over.
+  void wait_for(std::chrono::milliseconds time) const { face_->wait_for(time); }
   /// Done, failed or cancelled. Quicker than a snapshot.
-  bool has_ended() const;
+  bool has_ended() const { return is_final(face_->status().state); }
+  /// A reader of the answer itself went away: takes one interest away, or ends what is not stored. At once; nobody
+  /// waits for it to be durable.
+  void abandon();
 
-  // For whoever computes it.
-  void set_job(std::shared_ptr<Job> job);
+  // For whoever computes or follows it.
+  /// What computes it in this process from now on.
+  void set_work(std::shared_ptr<Job> work);
+  /// Ends the work in this process and nothing else: somebody else goes on.
+  void stop_work();
+  bool wait_for_work(std::chrono::milliseconds time) const;
+  void report(const char* stage, double fraction);
+  bool is_cancelled() const { return face_->cancelled(); }
+  /// One that is known already is not added again.
   void add_level(Json entry);
   /// Done. Levels take the manifest's full entries.
   void complete(Json manifest, std::optional<ExtractionTimings> timings);
-  /// Stopped before anybody computed it, by a cancellation that the store remembers.
-  void set_cancelled();
-
-  // Interest: every POST adds one; when the last is withdrawn the work stops.
-  /// False when it is ending without a result: whoever asks now must start it anew.
-  bool add_interest();
-  /// True when none is left and the work has not ended: it is ending from now on, and the caller calls cancel().
-  bool withdraw_interest();
+  /// Ended without a result.
+  void fail(Error error) { face_->finish(std::move(error)); }
+  /// Nobody wants it any more: it ends as cancelled, the work in this process with it.
   void cancel();
-  /// Nobody wants it any more, and it has no result: it ends, or has ended, as cancelled.
-  bool is_ending() const;
+  /// Interests that were abandoned since the last call.
+  int take_abandoned() { return abandoned_.exchange(0); }
 
  private:
   const Identity identity_;
   const PartReader parts_;
+  const bool is_stored_;
+  /// The extraction as others see it, whoever computes it: state, progress, bells. Never in a queue itself.
+  const std::shared_ptr<Job> face_ = std::make_shared<Job>();
+  std::atomic<int> abandoned_{0};
   mutable std::mutex mutex_;
-  std::shared_ptr<Job> job_;
+  std::shared_ptr<Job> work_;
   std::vector<Json> levels_;
   std::optional<Json> manifest_;
   std::optional<ExtractionTimings> timings_;
-  bool cancelled_ = false;  ///< before anybody computed it
-  bool ending_ = false;
-  int interest_ = 0;
+};
+
+/// Tells an extraction's face of the progress of the work that computes it, and the work of its cancellation.
+class ExtractionProgress final : public Progress {
+ public:
+  ExtractionProgress(Extraction& extraction, Progress& work) : extraction_(extraction), work_(work) {}
+  void report(const char* stage, double fraction) override {
+    work_.report(stage, fraction);
+    extraction_.report(stage, fraction);
+  }
+  bool cancelled() const override { return work_.cancelled() || extraction_.is_cancelled(); }
+
+ private:
+  Extraction& extraction_;
+  Progress& work_;
 };
 
 /// The resource of the outside contract.

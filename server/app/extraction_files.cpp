@@ -25,6 +25,13 @@ Result<void> wait_until_made(const Result<std::shared_ptr<Job>>& job) {
   return (*job)->outcome();
 }
 
+bool has_part(const Extraction::Snapshot& now, int level, int part) {
+  for (const Json& entry : now.levels) {
+    if (entry.at("level") == level) return part >= 0 && part < static_cast<int>(entry.at("parts").size());
+  }
+  return false;
+}
+
 LevelFile bytes_file(std::vector<std::byte> bytes) {
   LevelFile file{.sha256 = sha256_hex(bytes), .bytes = bytes.size(), .stream = nullptr, .transform = {}};
   file.stream = bytes_stream(std::move(bytes));
@@ -78,13 +85,14 @@ Result<void> Extractions::make_bodies(const Extraction::Identity& identity, Job&
 Result<LevelFile> Extractions::part(const std::string& id, int level, int part) {
   const auto extraction = find(id);
   if (!extraction) return extraction.error();
-  auto bytes = (*extraction)->read_part(level, part);
-  if (!bytes) {
-    if (bytes.error().code != ErrorCode::not_found) return std::move(bytes).error();
+  if (!has_part((*extraction)->snapshot(), level, part)) {
     return Error{ErrorCode::not_found,
                  "extraction " + id + ": no part " + std::to_string(part) + " of level " + std::to_string(level)};
   }
-  return bytes_file(*std::move(bytes));
+  auto bytes = (*extraction)->read_part(level, part);
+  if (bytes) return bytes_file(*std::move(bytes));
+  if (bytes.error().code != ErrorCode::not_found) return std::move(bytes).error();
+  return Error{ErrorCode::unavailable, "extraction " + id + ": its parts were removed; it is computed again"};
 }
 
 std::optional<LevelFormat> level_format_of(std::string_view extension) {

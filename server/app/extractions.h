@@ -14,7 +14,10 @@
 #include "server/app/byte_stream.h"
 #include "server/app/compute.h"
 #include "server/app/extraction.h"
+#include "server/app/extraction_blobs.h"
+#include "server/app/extraction_watch.h"
 #include "server/app/fills.h"
+#include "server/app/run_record.h"
 #include "server/app/volumes.h"
 #include "server/jobs/job_queue.h"
 #include "server/store/blob_store.h"
@@ -40,22 +43,25 @@ struct LevelFile {
 ///
 /// Stored under <tenant>/extractions/<id>/: `request.json` (before anything is acknowledged),
 /// `parts/<level>.<part>.drc`, `levels/<level>.<format>` with a description beside it (whole files, made on first
-/// request), `bodies.json` (made on first request), `cancelled.json`, and `manifest.json`, written last: an extraction
-/// is done when its manifest is there. <tenant>/volumes/<volume>/results/<id> tells what was derived from a volume.
+/// request), `bodies.json` (made on first request), `run.json` and `levels.json` until it is done (RunRecord: who wants
+/// it, who computes it, which levels are ready), and `manifest.json`, written last: an extraction is done when its
+/// manifest is there. <tenant>/volumes/<volume>/results/<id> tells what was derived from a volume. docs/store.md tells
+/// what follows for several servers on one store.
 class Extractions {
  public:
   /// threads   that one extraction may use.
   Extractions(BlobStore& store, Volumes& volumes, JobQueue& queue, std::string tenant, int threads,
-              ReconstructFunction reconstruct = geosis::reconstruct);
+              ReconstructFunction reconstruct = geosis::reconstruct, WatchTiming timing = {});
 
   /// Records the request durably and starts it, unless it is done or running; equal requests are computed once. A
   /// failed or cancelled one starts again. Adds one interest.
   ///
   /// errors   not_found: the volume; invalid_argument, unsupported: the request; unavailable: the queue is full.
   Result<std::shared_ptr<Extraction>> create(const std::string& volume, const Json& request, Priority priority);
-  /// The extraction, from memory or from the store; one that the store only knows as a request is computed.
+  /// The extraction, from memory or from the store. One that nobody computes any more is computed here; one that
+  /// another server computes is followed.
   ///
-  /// errors   not_found.  unavailable: recorded by another result version and not done.
+  /// errors   not_found.  internal: damaged.  unavailable: recorded by another result version and not done.
   Result<std::shared_ptr<Extraction>> find(const std::string& id);
   /// One shot: the file is imported, reconstructed and forgotten. Parts live as long as the extraction object.
   Result<std::shared_ptr<Extraction>> create_transient(const ByteSource& file, const UploadOptions& upload,
@@ -65,11 +71,13 @@ class Extractions {
   /// Takes one interest away; without any left the work stops, durably.
   Result<void> withdraw(const std::string& id);
   /// The same for a reader who went away, of just this extraction and at once: nobody waits for it to be durable.
-  static void abandon(Extraction& extraction);
+  static void abandon(Extraction& extraction) { extraction.abandon(); }
   /// Removes a stored result.
   Result<void> purge(const std::string& id);
   /// Removes all that was derived from a volume: results, and its filled samples.
   Result<void> purge_results_of(const std::string& volume);
+  /// Removes what is left of results and fills whose volume or request is gone.
+  Result<void> collect_garbage();
 
   /// False when level() would have to make the file first.
   bool is_level_made(const std::string& id, int level, LevelFormat format);
@@ -97,15 +105,30 @@ class Extractions {
   Result<void> write_document(const BlobKey& key, const Json& document);
   PartReader part_reader(const std::string& id) const;
 
-  struct Entry;
+  /// An id's place in the table. The mutex serialises whoever starts or loads it, so that it happens once.
+  struct Entry {
+    std::mutex mutex;
+    std::shared_ptr<Extraction> extraction;
+  };
   std::shared_ptr<Entry> entry_of(const std::string& id);
+  void drop_outdated(Entry& entry) const;
   Result<std::shared_ptr<Extraction>> load(Entry& entry, const std::string& id);
-  Result<std::shared_ptr<Extraction>> record_and_start(Entry& entry, Extraction::Identity identity, Priority priority);
+  Result<bool> load_for_create(Entry& entry, const std::string& id);
+  /// Adds an interest to one that is computed already. False: nobody computes it.
+  Result<bool> join(Entry& entry);
+  Result<std::shared_ptr<Extraction>> record_and_start(Entry& entry, Extraction::Identity identity, bool is_recorded,
+                                                       Priority priority);
+  Result<void> record_request(const Extraction::Identity& identity);
+  Result<bool> record_interest(const std::string& id, const std::string& owner);
   /// recorded   the job goes on once this says true, and gives up when it says false.
-  Result<void> start(std::shared_ptr<Extraction> extraction, Priority priority, std::shared_future<bool> recorded);
-  Result<void> record(const Extraction::Identity& identity);
+  Result<void> submit(const std::shared_ptr<Extraction>& extraction, const std::string& owner, Priority priority,
+                      std::shared_future<bool> recorded);
+  void discard_result(const std::string& id) const;
   Result<void> remove_blobs(const std::string& id);
-  Result<void> run(Extraction& extraction, Job& job);
+  Result<void> collect_garbage_of(const std::string& id);
+  Result<void> remove_leftovers(const std::string& id);
+  Result<void> run(const std::shared_ptr<Extraction>& extraction, const std::string& owner, Job& job);
+  Result<void> compute(Extraction& extraction, const std::string& owner, Job& job);
 
   /// Everything that the request of an extraction needs, held.
   struct Opened {
@@ -139,6 +162,8 @@ class Extractions {
   std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Entry>> entries_;  ///< recently used, by id
   std::map<BlobKey, std::weak_ptr<Job>> making_;           ///< files that are made on request, by their key
+  RunRecords records_;
+  ExtractionWatch watch_;  ///< last: its thread uses all above
 };
 
 }  // namespace geosis::server

@@ -17,42 +17,10 @@ namespace {
 
 using namespace std::chrono_literals;
 using test::ball_request;
+using test::comes_true;
+using test::Gate;
+using test::gated_after;
 using test::Service;
-
-/// Lets a reconstruction come to one level and no further until it is opened.
-class Gate {
- public:
-  void open() { is_open_.store(true); }
-  void wait(Progress& progress) {
-    has_arrived_ = true;
-    while (!is_open_ && !progress.cancelled()) std::this_thread::sleep_for(1ms);
-  }
-  bool has_arrived() const { return has_arrived_; }
-
- private:
-  std::atomic<bool> is_open_{false}, has_arrived_{false};
-};
-
-/// reconstruct() that stops at the gate once level `level` is encoded, before the finer ones are.
-ReconstructFunction gated_after(int level, Gate& gate) {
-  return [level, &gate](const ReconstructInput& input, const ReconstructOptions& options, Progress& progress,
-                        StageTimings* timings, const LevelSink& sink) {
-    const LevelSink gated = [&](std::size_t number, const ReconstructedLevel& done) {
-      sink(number, done);
-      if (static_cast<int>(number) == level) gate.wait(progress);
-    };
-    return reconstruct(input, options, progress, timings, gated);
-  };
-}
-
-template <class Condition>
-bool comes_true(const Condition& condition) {
-  for (int n = 0; n < 10000; ++n) {
-    if (condition()) return true;
-    std::this_thread::sleep_for(1ms);
-  }
-  return false;
-}
 
 class ExtractionsTest : public testing::Test {
  protected:

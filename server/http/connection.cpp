@@ -1,12 +1,11 @@
 #include "server/http/connection.h"
 
 #include <array>
-#include <cerrno>
+#include <span>
 #include <string_view>
 #include <utility>
 
 #include <sys/epoll.h>
-#include <sys/socket.h>
 
 #include "server/http/error_reply.h"
 
@@ -17,9 +16,9 @@ constexpr std::size_t kReceiveBytes = 16 * 1024;
 
 }  // namespace
 
-Connection::Connection(std::uint64_t id, Descriptor socket, std::string peer, ConnectionOwner& owner)
+Connection::Connection(std::uint64_t id, std::unique_ptr<Channel> channel, std::string peer, ConnectionOwner& owner)
     : id_(id),
-      socket_(std::move(socket)),
+      channel_(std::move(channel)),
       peer_(std::move(peer)),
       owner_(owner),
       deadline_(Clock::now() + owner.limits().head_deadline),
@@ -33,13 +32,13 @@ std::uint32_t Connection::interest() const {
     case State::reading_body:
     case State::starting_upload:
     case State::lingering:
-      return EPOLLIN;
+      return channel_->read_event();
     case State::handling:
     case State::suspended:
     case State::waiting:
       return departure;
     case State::writing:
-      return EPOLLOUT | departure;
+      return channel_->write_event() | departure;
     case State::uploading:
     case State::finished:
       break;
@@ -54,8 +53,9 @@ void Connection::on_events(std::uint32_t events) {
     // A small answer is still delivered; nobody is there for what may come later.
     if (suspended_ || (writer_ && writer_->has_stream())) return finish();
   }
-  if (events & EPOLLIN) receive();
-  if ((events & EPOLLOUT) && state_ == State::writing) write();
+  if (!(events & (EPOLLIN | EPOLLOUT))) return;
+  if (state_ == State::writing) return write();
+  receive();
 }
 
 void Connection::on_bell() {
@@ -87,19 +87,17 @@ void Connection::on_drain() {
   if (state_ == State::reading_head && in_.empty()) finish();
 }
 
-void Connection::interrupt() {
-  ::shutdown(socket_.number(), SHUT_RDWR);
-}
-
 void Connection::receive() {
   std::array<char, kReceiveBytes> piece;
-  const ssize_t count = ::recv(socket_.number(), piece.data(), piece.size(), MSG_DONTWAIT);
-  if (count < 0 && (errno == EAGAIN || errno == EINTR)) return;
-  if (count == 0 && state_ == State::starting_upload) return start_upload();  // which says that it is cut short
-  if (count <= 0) return finish();
+  const Channel::Moved received = channel_->receive(piece);
+  if (received.outcome == Channel::Moved::Outcome::blocked) return;
+  if (received.outcome == Channel::Moved::Outcome::ended && state_ == State::starting_upload) {
+    return start_upload();  // which says that it is cut short
+  }
+  if (received.outcome != Channel::Moved::Outcome::some) return finish();
   if (state_ == State::lingering) return;
   if (in_.empty() && state_ == State::reading_head) deadline_ = Clock::now() + owner_.limits().head_deadline;
-  in_.append(piece.data(), static_cast<std::size_t>(count));
+  in_.append(piece.data(), received.count);
   advance();
 }
 
@@ -150,7 +148,7 @@ void Connection::begin_small_body(const Head& head) {
 
 void Connection::invite() {
   constexpr std::string_view kInvitation = "HTTP/1.1 100 Continue\r\n\r\n";
-  if (in_.empty()) ::send(socket_.number(), kInvitation.data(), kInvitation.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+  if (in_.empty()) channel_->send(std::span(&kInvitation, 1));  // who does not get it sends its body after a while
 }
 
 void Connection::begin_upload(Head head) {

@@ -9,7 +9,7 @@
 #include <variant>
 
 #include "server/http/body_collector.h"
-#include "server/http/descriptor.h"
+#include "server/http/channel.h"
 #include "server/http/dispatcher.h"
 #include "server/http/limits.h"
 #include "server/http/rate_guard.h"
@@ -49,10 +49,11 @@ class Connection {
  public:
   using Clock = std::chrono::steady_clock;
 
-  Connection(std::uint64_t id, Descriptor socket, std::string peer, ConnectionOwner& owner);
+  Connection(std::uint64_t id, std::unique_ptr<Channel> channel, std::string peer, ConnectionOwner& owner);
 
   std::uint64_t id() const { return id_; }
-  int socket() const { return socket_.number(); }
+  int socket() const { return channel_->socket(); }
+  Channel& channel() { return *channel_; }
   const std::string& peer() const { return peer_; }
 
   void on_events(std::uint32_t events);
@@ -65,8 +66,6 @@ class Connection {
   void answer(std::unique_ptr<ReplyWriter> writer);
   /// Waits for a pending answer.
   void suspend(std::unique_ptr<Suspended> suspended);
-  /// Breaks the socket while a thread reads an upload from it.
-  void interrupt();
 
   /// The epoll events it waits for; 0 = none, not even failures.
   std::uint32_t interest() const;
@@ -119,7 +118,7 @@ class Connection {
   bool judge_rate();
 
   std::uint64_t id_;
-  Descriptor socket_;
+  std::unique_ptr<Channel> channel_;
   std::string peer_;
   ConnectionOwner& owner_;
   State state_ = State::reading_head;

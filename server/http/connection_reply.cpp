@@ -1,10 +1,6 @@
 #include <algorithm>
 #include <utility>
 
-#include <linux/sockios.h>
-#include <sys/ioctl.h>
-#include <sys/socket.h>
-
 #include "server/http/connection.h"
 
 // From an answer to the next request, or the connection's end.
@@ -38,7 +34,7 @@ void Connection::answer(std::unique_ptr<ReplyWriter> writer) {
 void Connection::write() {
   state_ = State::writing;
   const bool was_blocked = blocked_since_.has_value();
-  const auto outcome = writer_->write(socket_.number());
+  const auto outcome = writer_->write(*channel_);
   if (was_blocked && !judge_rate()) return drop();
   blocked_since_.reset();
   switch (outcome) {
@@ -70,10 +66,8 @@ bool Connection::judge_rate() {
 }
 
 std::uint64_t Connection::bytes_taken() const {
-  int queued = 0;
-  ::ioctl(socket_.number(), SIOCOUTQ, &queued);
   const std::uint64_t written = written_before_ + writer_->bytes_written();
-  return written - std::min(written, static_cast<std::uint64_t>(std::max(queued, 0)));
+  return written - std::min(written, channel_->unsent());
 }
 
 void Connection::next_request() {
@@ -86,18 +80,18 @@ void Connection::next_request() {
 
 void Connection::linger() {
   // Closing with unread bytes would reset the connection, and the reset may overtake the answer.
-  ::shutdown(socket_.number(), SHUT_WR);
+  channel_->end();
   state_ = State::lingering;
   deadline_ = Clock::now() + owner_.limits().linger;
 }
 
 void Connection::drop() {
-  const struct linger at_once { .l_onoff = 1, .l_linger = 0 };
-  ::setsockopt(socket_.number(), SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+  channel_->forget_unsent();
   finish();
 }
 
 void Connection::finish() {
+  if (state_ == State::reading_head) channel_->end();
   state_ = State::finished;
   suspended_.reset();
   writer_.reset();

@@ -12,8 +12,8 @@ namespace geosis::server::http {
 class Front::Running {
  public:
   Running(const FrontOptions& options, Router routes, Listener listener, Poller poller,
-          std::shared_ptr<Mailbox> mailbox)
-      : loop_(options, std::move(routes), std::move(listener), std::move(poller), std::move(mailbox)),
+          std::shared_ptr<Mailbox> mailbox, std::unique_ptr<TlsContext> tls)
+      : loop_(options, std::move(routes), std::move(listener), std::move(poller), std::move(mailbox), std::move(tls)),
         thread_([this] { loop_.run(); }) {}
   ~Running() { stop(); }
 
@@ -29,6 +29,12 @@ class Front::Running {
 };
 
 Result<std::unique_ptr<Front>> Front::start(FrontOptions options, Router routes) {
+  std::unique_ptr<TlsContext> tls;
+  if (!options.tls_certificate.empty() || !options.tls_key.empty()) {
+    auto loaded = TlsContext::load(options.tls_certificate, options.tls_key);
+    if (!loaded) return std::move(loaded).error();
+    tls = *std::move(loaded);
+  }
   auto listener = Listener::open(options.listen);
   if (!listener) return std::move(listener).error();
   auto poller = Poller::open();
@@ -37,7 +43,7 @@ Result<std::unique_ptr<Front>> Front::start(FrontOptions options, Router routes)
   if (!mailbox) return std::move(mailbox).error();
   try {
     auto running = std::make_unique<Running>(options, std::move(routes), *std::move(listener), *std::move(poller),
-                                             *std::move(mailbox));
+                                             *std::move(mailbox), std::move(tls));
     return std::unique_ptr<Front>(new Front(std::move(running)));
   } catch (const std::system_error& error) {
     return Error{ErrorCode::unavailable, std::string("cannot start the front's threads: ") + error.what()};

@@ -14,7 +14,8 @@
 namespace geosis::server::http {
 
 struct FrontOptions {
-  std::string listen = "127.0.0.1:8080";  ///< "host:port"; port 0 = any that is free
+  std::string listen = "127.0.0.1:8080";           ///< "host:port"; port 0 = any that is free
+  std::string tls_certificate = {}, tls_key = {};  ///< files in PEM; empty = plain HTTP
   Limits limits = {};
   CorsOptions cors = {};
   std::size_t handler_threads = 8;
@@ -27,10 +28,11 @@ struct FrontOptions {
 ///
 /// One thread holds all connections, idle, reading, writing and waiting for a stream alike: a slow client costs a
 /// descriptor and at most 64 KiB, never a thread. Handlers run on a few threads and may block; uploads have a thread
-/// each. HTTP/1.1 only; TLS and HTTP/2 are a proxy's.
+/// each. HTTP/1.1 only, plain or behind TLS; HTTP/2 is a proxy's.
 class Front {
  public:
-  /// Listens and serves until stop(). errors: invalid_argument (address), unavailable (port taken, no descriptors).
+  /// Listens and serves until stop(). errors: invalid_argument (address, certificate), unavailable (port taken, no
+  /// descriptors).
   static Result<std::unique_ptr<Front>> start(FrontOptions options, Router routes);
   ~Front();
 

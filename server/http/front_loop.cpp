@@ -1,10 +1,9 @@
 #include "server/http/front_loop.h"
 
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
-
-#include <sys/socket.h>
 
 #include "server/http/error_reply.h"
 #include "server/http/reply_head.h"
@@ -24,7 +23,7 @@ std::string full_answer() {
 }  // namespace
 
 FrontLoop::FrontLoop(const FrontOptions& options, Router routes, Listener listener, Poller poller,
-                     std::shared_ptr<Mailbox> mailbox)
+                     std::shared_ptr<Mailbox> mailbox, std::unique_ptr<TlsContext> tls)
     : limits_(options.limits),
       held_bodies_(options.limits.held_bytes),
       dispatcher_(std::move(routes), options.cors, options.middleware),
@@ -33,6 +32,7 @@ FrontLoop::FrontLoop(const FrontOptions& options, Router routes, Listener listen
       mailbox_(std::move(mailbox)),
       handlers_(options.handler_threads, options.queued_requests),
       uploads_(options.upload_threads),
+      tls_(std::move(tls)),
       port_(listener_.port()),
       next_id_(kFirstConnection) {}
 
@@ -87,14 +87,19 @@ void FrontLoop::accept_all() {
 void FrontLoop::admit(Listener::Accepted accepted) {
   if (!has_room_for(accepted.peer)) end_idlest(connections_.size() < limits_.connections ? &accepted.peer : nullptr);
   if (!has_room_for(accepted.peer)) {
+    if (tls_) return;  // a greeting would cost more than the refusal is worth
     const std::string full = full_answer();
-    ::send(accepted.socket.number(), full.data(), full.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    const std::string_view text = full;
+    Channel(std::move(accepted.socket)).send(std::span(&text, 1));
     return;
   }
+  auto channel =
+      tls_ ? tls_->accept(std::move(accepted.socket)) : std::make_unique<Channel>(std::move(accepted.socket));
+  if (!channel) return;
   ++peers_[accepted.peer];
   const std::uint64_t id = next_id_++;
   ConnectionOwner& owner = *this;
-  auto connection = std::make_unique<Connection>(id, std::move(accepted.socket), std::move(accepted.peer), owner);
+  auto connection = std::make_unique<Connection>(id, std::move(channel), std::move(accepted.peer), owner);
   settle(*connections_.emplace(id, std::move(connection)).first->second);
 }
 
@@ -151,7 +156,7 @@ void FrontLoop::drain_some() {
 
 void FrontLoop::close_all() {
   for (const auto& [id, connection] : connections_)
-    if (connection->is_uploading()) connection->interrupt();
+    if (connection->is_uploading()) connection->channel().interrupt();
   mailbox_->close();
   handlers_.stop();
   uploads_.join_all();
@@ -223,9 +228,9 @@ bool FrontLoop::handle(Connection& connection, Router::Resolved resolved) {
 }
 
 bool FrontLoop::upload(Connection& connection, Head head, Router::Resolved resolved, std::string already) {
-  const auto work = [this, id = connection.id(), socket = connection.socket(), head = std::move(head),
+  const auto work = [this, id = connection.id(), &channel = connection.channel(), head = std::move(head),
                      resolved = std::move(resolved), already = std::move(already)] {
-    UploadBody body(socket, head, already, limits_);
+    UploadBody body(channel, head, already, limits_);
     const ReplyForm form{.is_head = false, .closes = true};
     const auto run = [&] { return dispatcher_.run_upload(resolved, body); };
     mailbox_->post(letter_with_answer(id, resolved.request, form, run));

@@ -15,6 +15,7 @@
 #include "server/http/listener.h"
 #include "server/http/mailbox.h"
 #include "server/http/poller.h"
+#include "server/http/tls.h"
 #include "server/http/upload_threads.h"
 
 namespace geosis::server::http {
@@ -23,7 +24,7 @@ namespace geosis::server::http {
 class FrontLoop final : private ConnectionOwner {
  public:
   FrontLoop(const FrontOptions& options, Router routes, Listener listener, Poller poller,
-            std::shared_ptr<Mailbox> mailbox);
+            std::shared_ptr<Mailbox> mailbox, std::unique_ptr<TlsContext> tls);
 
   /// Serves until stop(); the calling thread becomes the loop's.
   void run();
@@ -73,6 +74,7 @@ class FrontLoop final : private ConnectionOwner {
   std::shared_ptr<Mailbox> mailbox_;
   HandlerPool handlers_;
   UploadThreads uploads_;
+  std::unique_ptr<TlsContext> tls_;  ///< null = plain
   std::uint16_t port_;
   std::uint64_t next_id_;
   std::unordered_map<std::uint64_t, std::unique_ptr<Connection>> connections_;

@@ -1,14 +1,10 @@
 #include "server/http/reply_writer.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <exception>
 #include <utility>
-
-#include <sys/socket.h>
-#include <sys/uio.h>
 
 #include "server/http/error_reply.h"
 
@@ -49,12 +45,12 @@ void ReplyWriter::on_ready(std::function<void()> bell) {
   if (stream_) stream_->on_ready(std::move(bell));
 }
 
-ReplyWriter::Outcome ReplyWriter::write(int socket) {
+ReplyWriter::Outcome ReplyWriter::write(Channel& channel) {
   std::uint64_t turn_end = written_ + kTurnBytes;
   for (;;) {
     while (has_pending()) {
-      if (send_pending(socket) >= 0 || errno == EINTR) continue;
-      return errno == EAGAIN ? Outcome::blocked : Outcome::broken;
+      if (written_ >= turn_end) return Outcome::more;
+      if (const auto stopped = send_pending(channel)) return *stopped;
     }
     if (!stream_) {
       is_finished_ = true;
@@ -65,24 +61,19 @@ ReplyWriter::Outcome ReplyWriter::write(int socket) {
   }
 }
 
-std::ptrdiff_t ReplyWriter::send_pending(int socket) {
-  std::array<iovec, 2> pieces{};
-  for (std::size_t i = 0; i < pieces.size(); ++i) {
-    pieces[i] = {const_cast<char*>(pending_[i].data()), pending_[i].size()};
+std::optional<ReplyWriter::Outcome> ReplyWriter::send_pending(Channel& channel) {
+  const Channel::Moved sent = channel.send(pending_);
+  if (sent.outcome != Channel::Moved::Outcome::some) {
+    return sent.outcome == Channel::Moved::Outcome::blocked ? Outcome::blocked : Outcome::broken;
   }
-  msghdr message{};
-  message.msg_iov = pieces.data();
-  message.msg_iovlen = pieces.size();
-  const ssize_t sent = ::sendmsg(socket, &message, MSG_NOSIGNAL | MSG_DONTWAIT);
-  if (sent < 0) return sent;
-  written_ += static_cast<std::uint64_t>(sent);
-  auto left = static_cast<std::size_t>(sent);
+  written_ += sent.count;
+  std::size_t left = sent.count;
   for (std::string_view& piece : pending_) {
     const std::size_t taken = std::min(left, piece.size());
     piece.remove_prefix(taken);
     left -= taken;
   }
-  return sent;
+  return std::nullopt;
 }
 
 std::optional<ReplyWriter::Outcome> ReplyWriter::refill() {

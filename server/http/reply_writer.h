@@ -9,12 +9,13 @@
 #include <string_view>
 
 #include "server/http/body_budget.h"
+#include "server/http/channel.h"
 #include "server/http/exchange.h"
 #include "server/http/reply_head.h"
 
 namespace geosis::server::http {
 
-/// One reply on its way to a non-blocking socket. A stream is pulled 64 KiB at a time, only when the socket took what
+/// One reply on its way into a channel. A stream is pulled 64 KiB at a time, only when the socket took what
 /// was pulled before; while it waits for its next bytes no buffer is held. Its destruction destroys the stream.
 class ReplyWriter {
  public:
@@ -31,7 +32,7 @@ class ReplyWriter {
     more,     ///< enough for one turn: others wait
     broken,   ///< the socket or the stream failed; the peer must see an incomplete answer
   };
-  Outcome write(int socket);
+  Outcome write(Channel& channel);
 
   /// bell   called from any thread when a stream that waits may go on.
   void on_ready(std::function<void()> bell);
@@ -45,8 +46,8 @@ class ReplyWriter {
 
  private:
   bool has_pending() const { return !pending_[0].empty() || !pending_[1].empty(); }
-  /// What send() says; the bytes it took are no longer pending.
-  std::ptrdiff_t send_pending(int socket);
+  /// Sends some. Nothing = it may go on.
+  std::optional<Outcome> send_pending(Channel& channel);
   /// Pulls the stream's next bytes. Nothing = there is something to send, or the stream was finished.
   std::optional<Outcome> refill();
   Result<ByteStream::Pulled> pull(std::size_t room);

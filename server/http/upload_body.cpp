@@ -1,14 +1,12 @@
 #include "server/http/upload_body.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <string_view>
 #include <utility>
 
 #include <poll.h>
-#include <sys/socket.h>
 
 namespace geosis::server::http {
 namespace {
@@ -18,8 +16,8 @@ constexpr int kPollMilliseconds = 250;
 
 }  // namespace
 
-UploadBody::UploadBody(int socket, const Head& head, std::string already, const Limits& limits)
-    : socket_(socket),
+UploadBody::UploadBody(Channel& channel, const Head& head, std::string already, const Limits& limits)
+    : channel_(channel),
       buffer_(std::move(already)),
       left_(head.is_chunked ? limits.upload_bytes : head.content_length.value_or(0)),
       is_chunked_(head.is_chunked),
@@ -71,24 +69,26 @@ Result<std::size_t> UploadBody::receive(std::span<std::byte> into) {
     return count;
   }
   for (;;) {
-    const ssize_t count = ::recv(socket_, into.data(), into.size(), MSG_DONTWAIT);
-    if (count > 0) {
-      rate_.add(static_cast<std::uint64_t>(count), {});
-      return static_cast<std::size_t>(count);
-    }
-    if (count == 0) return Error{ErrorCode::malformed_input, "the body ends before its stated end"};
-    if (errno == EAGAIN) {
-      if (auto waited = wait_for_bytes(); !waited) return std::move(waited).error();
-    } else if (errno != EINTR) {
-      return Error{ErrorCode::malformed_input, std::string("the connection broke: ") + std::strerror(errno)};
+    const Channel::Moved received = channel_.receive({reinterpret_cast<char*>(into.data()), into.size()});
+    switch (received.outcome) {
+      case Channel::Moved::Outcome::some:
+        rate_.add(received.count, {});
+        return received.count;
+      case Channel::Moved::Outcome::blocked:
+        if (auto waited = wait_for_bytes(); !waited) return std::move(waited).error();
+        break;
+      case Channel::Moved::Outcome::ended:
+        return Error{ErrorCode::malformed_input, "the body ends before its stated end"};
+      case Channel::Moved::Outcome::broken:
+        return Error{ErrorCode::malformed_input, "the connection broke before the body's stated end"};
     }
   }
 }
 
 Result<void> UploadBody::wait_for_bytes() {
   const auto start = std::chrono::steady_clock::now();
-  pollfd readable{socket_, POLLIN, 0};
-  ::poll(&readable, 1, kPollMilliseconds);
+  pollfd event{channel_.socket(), static_cast<short>(channel_.read_event()), 0};  // POLLIN is EPOLLIN
+  ::poll(&event, 1, kPollMilliseconds);
   if (rate_.add(0, std::chrono::steady_clock::now() - start)) return {};
   return Error{ErrorCode::deadline_exceeded, "the body arrives too slowly"};
 }

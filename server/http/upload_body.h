@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "server/http/channel.h"
 #include "server/http/chunk_decoder.h"
 #include "server/http/exchange.h"
 #include "server/http/limits.h"
@@ -11,11 +12,11 @@
 
 namespace geosis::server::http {
 
-/// An upload's body, read from a non-blocking socket by the upload's own thread.
+/// An upload's body, read from its channel by the upload's own thread.
 class UploadBody final : public BodyReader {
  public:
   /// already   what arrived together with the head.
-  UploadBody(int socket, const Head& head, std::string already, const Limits& limits);
+  UploadBody(Channel& channel, const Head& head, std::string already, const Limits& limits);
 
   Result<std::size_t> read(std::span<std::byte> into) override;
 
@@ -27,7 +28,7 @@ class UploadBody final : public BodyReader {
   Result<std::size_t> receive(std::span<std::byte> into);
   Result<void> wait_for_bytes();
 
-  int socket_;
+  Channel& channel_;
   std::string buffer_;  ///< bytes of the wire that are not decoded yet, from begin_ on
   std::size_t begin_ = 0;
   std::uint64_t left_;  ///< of the stated length, or what the limit still allows of a chunked body

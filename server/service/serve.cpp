@@ -85,6 +85,8 @@ void drain_and_stop(http::Front& front, JobQueue& queue, StopSignals& signals, s
 http::FrontOptions front_options(const ServeOptions& options) {
   http::FrontOptions front;
   front.listen = options.listen;
+  front.tls_certificate = options.tls_certificate;
+  front.tls_key = options.tls_key;
   front.limits.upload_bytes = options.max_body_bytes;
   // Some descriptors stay for the store: a client must not keep others' files from being opened.
   const std::size_t descriptors = raise_descriptor_limit();
@@ -119,7 +121,8 @@ Result<void> serve(const ServeOptions& options) {
   http::add_service_routes(router, services, options.page);
   auto front = http::Front::start(front_options(options), std::move(router));
   if (!front) return std::move(front).error();
-  std::printf("listening on http://%s:%u\n", host_of(options.listen).c_str(), unsigned{(*front)->port()});
+  std::printf("listening on %s://%s:%u\n", options.tls_certificate.empty() ? "http" : "https",
+              host_of(options.listen).c_str(), unsigned{(*front)->port()});
   std::fflush(stdout);
 
   signals.wait();

@@ -13,6 +13,7 @@ namespace geosis::server {
 /// How a server is set up: flags, environment and configuration file end up here.
 struct ServeOptions {
   std::string listen = "127.0.0.1:8080";
+  std::string tls_certificate, tls_key;  ///< files in PEM; empty = plain HTTP
   std::filesystem::path store = "geosis-store";
   std::filesystem::path page;  ///< folder of the built page
   std::string auth;            ///< "none": anybody may call; "" allows loopback alone

@@ -26,6 +26,10 @@ Command add_serve_command(CLI::App& app) {
     return command.add_option(name, value, help)->capture_default_str();
   };
   flag("--listen", options.listen, "HOST:PORT; port 0 = any that is free")->type_name("ADDRESS");
+  auto* certificate = flag("--tls-cert", options.tls_certificate, "certificate chain; with it the door speaks TLS");
+  auto* key = flag("--tls-key", options.tls_key, "the certificate's key");
+  certificate->type_name("PEM")->needs(key);
+  key->type_name("PEM")->needs(certificate);
   flag("--store", arguments->store, "folder of everything that is kept")->type_name("DIR");
   flag("--threads", options.threads, "threads that one extraction may use")->check(CLI::Range(1, 1024));
   flag("--workers", options.workers, "extractions at one time")->check(CLI::Range(1, 1024));

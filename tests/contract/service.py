@@ -38,7 +38,7 @@ class Service:
     def __enter__(self):
         self.process = subprocess.Popen(self._command, stdout=subprocess.PIPE, text=True, **self._popen)
         line = self.process.stdout.readline()
-        if not line.startswith("listening on http://"):
+        if not line.startswith(("listening on http://", "listening on https://")):
             self.process.kill()
             raise RuntimeError(f"the server did not start: {line!r}")
         self.address = urllib.parse.urlsplit(line.split()[-1]).netloc

@@ -23,9 +23,9 @@ def sample_survey(folder, dims="48,56,64"):
     return (folder / "survey.sgy").read_bytes()
 
 
-def start(folder, *flags, **popen):
+def start(folder, *flags, patience=PATIENCE, **popen):
     """A server that soon loses its patience; a context manager."""
-    return Service(folder / "store", "--patience-seconds", str(PATIENCE), "--idle-seconds", "600", *flags, **popen)
+    return Service(folder / "store", "--patience-seconds", str(patience), "--idle-seconds", "600", *flags, **popen)
 
 
 def connect(address, receive_bytes=None):

@@ -7,7 +7,35 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#ifdef GEOSIS_THREAD_SANITIZER
+extern "C" void __tsan_acquire(void* address);
+extern "C" void __tsan_release(void* address);
+#endif
+
 namespace geosis {
+namespace {
+
+/// Tells the thread sanitizer, which does not see into TBB, what parallel_for promises: tasks begin after all that the
+/// caller has done, and the caller goes on after all that they have.
+class Handover {
+ public:
+#ifdef GEOSIS_THREAD_SANITIZER
+  void give() {
+    __tsan_release(&place_);
+  }
+  void take() {
+    __tsan_acquire(&place_);
+  }
+
+ private:
+  char place_ = 0;
+#else
+  void give() {}
+  void take() {}
+#endif
+};
+
+}  // namespace
 
 int default_threads() {
   return tbb::info::default_concurrency();
@@ -22,14 +50,19 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
   const tbb::global_control allow(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(std::max(threads, default_threads())));
   tbb::task_arena arena(threads);
+  Handover begin, end;
+  begin.give();
   arena.execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
+          begin.take();
           for (std::size_t i = range.begin(); i != range.end(); ++i) task(i);
+          end.give();
         },
         tbb::simple_partitioner());
   });
+  end.take();
 }
 
 }  // namespace geosis

@@ -4,6 +4,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <utility>
 
 namespace geosis {
 namespace {
@@ -53,26 +54,45 @@ Result<void> fill_vertices(const IndexedMesh& mesh, CornerTable& table) {
   return {};
 }
 
-/// All edge entries, grouped by lower vertex: those of vertex v are entries[first[v]] ... entries[first[v + 1] - 1].
+/// Edges are matched in at most this many rounds, for the memory's sake: each takes a scan of all corners.
+constexpr std::uint32_t kMostRounds = 4;
+constexpr std::uint32_t kLeastCornersARound = 1u << 18;
+
+/// Ends of the edge that corner c faces, the lower one first.
+std::pair<std::int32_t, std::int32_t> ends_of_edge(const CornerTable& table, std::int32_t c) {
+  return std::minmax({table.vertex[CornerTable::next(c)], table.vertex[CornerTable::previous(c)]});
+}
+
+/// (vertices + 1) How many corners face edges whose lower end is below vertex v.
+std::vector<std::uint32_t> count_edges_below(const CornerTable& table, std::size_t vertices) {
+  std::vector<std::uint32_t> below(vertices + 1, 0);
+  for (std::int32_t c = 0; c < table.corners(); ++c) ++below[ends_of_edge(table, c).first + 1];
+  for (std::size_t v = 1; v < below.size(); ++v) below[v] += below[v - 1];
+  return below;
+}
+
+/// Edge entries of some lower vertices, grouped by these: those of vertex begin + i are entries[first[i]] ...
+/// entries[first[i + 1] - 1].
 struct EdgeGroups {
+  std::int32_t begin;
   std::vector<std::uint32_t> first;
   std::vector<EdgeEntry> entries;
 
-  std::span<EdgeEntry> of(std::size_t v) { return std::span(entries).subspan(first[v], first[v + 1] - first[v]); }
+  std::size_t size() const { return first.size() - 1; }
+  std::span<EdgeEntry> of(std::size_t i) { return std::span(entries).subspan(first[i], first[i + 1] - first[i]); }
 };
 
-EdgeGroups group_edges(const CornerTable& table, std::size_t vertices) {
-  const auto ends = [&](std::int32_t c) {
-    return std::minmax(table.vertex[CornerTable::next(c)], table.vertex[CornerTable::previous(c)]);
-  };
-  EdgeGroups groups{std::vector<std::uint32_t>(vertices + 2, 0), std::vector<EdgeEntry>(table.vertex.size())};
-  // Counts go two places up, so that after the sums first[v + 1] is where v's next entry goes and ends as v + 1's
-  // first.
-  for (std::int32_t c = 0; c < table.corners(); ++c) ++groups.first[ends(c).first + 2];
-  for (std::size_t v = 2; v < groups.first.size(); ++v) groups.first[v] += groups.first[v - 1];
+/// Of the lower vertices begin ... end - 1.
+EdgeGroups group_edges(const CornerTable& table, const std::vector<std::uint32_t>& below, std::size_t begin,
+                       std::size_t end) {
+  EdgeGroups groups{static_cast<std::int32_t>(begin), {}, std::vector<EdgeEntry>(below[end] - below[begin])};
+  groups.first.reserve(end - begin + 1);
+  for (std::size_t v = begin; v <= end; ++v) groups.first.push_back(below[v] - below[begin]);
+  std::vector<std::uint32_t> next(groups.first.begin(), groups.first.end() - 1);
   for (std::int32_t c = 0; c < table.corners(); ++c) {
-    const auto [lower, higher] = ends(c);
-    groups.entries[groups.first[lower + 1]++] = make_entry(higher, c);
+    const auto [lower, higher] = ends_of_edge(table, c);
+    const std::size_t group = static_cast<std::size_t>(lower) - begin;  // wraps around below begin
+    if (group < next.size()) groups.entries[next[group]++] = make_entry(higher, c);
   }
   return groups;
 }
@@ -106,14 +126,28 @@ Error edge_fault(std::int32_t lower, std::span<const EdgeEntry> edge) {
 }
 
 Result<void> match_edges(EdgeGroups& groups, CornerTable& table) {
-  for (std::size_t v = 0; v + 2 < groups.first.size(); ++v) {
-    const std::span<EdgeEntry> entries = groups.of(v);
+  for (std::size_t group = 0; group < groups.size(); ++group) {
+    const std::span<EdgeEntry> entries = groups.of(group);
     std::sort(entries.begin(), entries.end());
     for (std::size_t i = 0; i < entries.size();) {
       const auto edge = edge_at(entries, i);
-      if (!match(edge, table)) return edge_fault(static_cast<std::int32_t>(v), edge);
+      if (!match(edge, table)) return edge_fault(groups.begin + static_cast<std::int32_t>(group), edge);
       i += edge.size();
     }
+  }
+  return {};
+}
+
+/// In rounds over ranges of lower vertices.
+Result<void> match_all_edges(CornerTable& table, std::size_t vertices) {
+  const std::vector<std::uint32_t> below = count_edges_below(table, vertices);
+  const std::uint32_t corners_a_round = std::max(kLeastCornersARound, below.back() / kMostRounds + 1);
+  for (std::size_t begin = 0; begin < vertices;) {
+    const auto past = std::upper_bound(below.begin() + begin + 2, below.end(), below[begin] + corners_a_round);
+    const auto end = static_cast<std::size_t>(past - below.begin()) - 1;
+    EdgeGroups groups = group_edges(table, below, begin, end);
+    if (auto matched = match_edges(groups, table); !matched) return matched;
+    begin = end;
   }
   return {};
 }
@@ -130,9 +164,7 @@ Result<CornerTable> build_corner_table(const IndexedMesh& mesh) {
   CornerTable table;
   if (auto filled = fill_vertices(mesh, table); !filled) return std::move(filled).error();
   table.opposite.assign(table.vertex.size(), CornerTable::kNoCorner);
-
-  EdgeGroups groups = group_edges(table, mesh.positions.size());
-  if (auto matched = match_edges(groups, table); !matched) return std::move(matched).error();
+  if (auto matched = match_all_edges(table, mesh.positions.size()); !matched) return std::move(matched).error();
   return table;
 }
 

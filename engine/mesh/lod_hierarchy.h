@@ -16,7 +16,6 @@ struct LodLevel {
   /// (n) for each vertex the vertex of M0 that it descends from: of those merged into it, one that lay near its place
   /// in every merge, always of the same component. Empty where each vertex is its own.
   std::vector<std::int32_t> origin;
-  double asked_ratio = 0;  ///< of M0's triangles; 0 for a level that was not asked for by ratio
   StoppedBy stopped_by = StoppedBy::none;
   double cost = 0;   ///< largest quadric cost accepted so far, in squared voxels times area
   double error = 0;  ///< of a level asked for by error: the distance to M0 that was measured, in voxels

@@ -1,6 +1,6 @@
 #include "engine/pipeline/certify.h"
 
-#include <cmath>
+#include <functional>
 #include <utility>
 
 namespace geosis {
@@ -10,8 +10,7 @@ bool same_mesh(const IndexedMesh& a, const IndexedMesh& b) {
   return a.positions == b.positions && a.triangles == b.triangles;
 }
 
-/// The mesh mapped to the space, relative to where the space puts `origin`: float32 is enough for a body, not for a
-/// place on earth.
+/// The mesh mapped to the space, relative to where the space puts the origin.
 IndexedMesh mapped(const IndexedMesh& mesh, const AffineGeometry& space, Vec3d origin) {
   IndexedMesh result{{}, mesh.triangles};
   result.positions.reserve(mesh.positions.size());
@@ -22,38 +21,15 @@ IndexedMesh mapped(const IndexedMesh& mesh, const AffineGeometry& space, Vec3d o
   return result;
 }
 
-/// Distances to M0 in voxels and in the units of the space. Both need M0 prepared: once for all levels.
-class DistanceToM0 {
- public:
-  DistanceToM0(const IndexedMesh& m0, const CertifyOptions& options)
-      : options_(options), by_index_(m0, {.threads = options.threads}) {
-    if (!options.has_lengths || is_index_space()) return;
-    origin_ = options.space.map(to_double(m0.positions.front()));
-    m0_in_space_ = mapped(m0, options.space, origin_);
-    in_space_.emplace(m0_in_space_, DistanceOptions{.threads = options.threads});
+/// For each level the one that is measured in its place: itself, or the coarsest one that is equal to it.
+std::vector<std::size_t> equal_levels(const std::vector<ReconstructedLevel>& levels) {
+  std::vector<std::size_t> equal(levels.size());
+  for (std::size_t k = levels.size(); k-- > 0;) {
+    const bool as_next = k + 1 < levels.size() && same_mesh(levels[k].lod.mesh, levels[k + 1].lod.mesh);
+    equal[k] = as_next ? equal[k + 1] : k;
   }
-  DistanceToM0(const DistanceToM0&) = delete;
-  DistanceToM0& operator=(const DistanceToM0&) = delete;
-
-  void measure(const IndexedMesh& decoded, ReconstructedLevel& level) const {
-    level.distance = by_index_.measure(decoded);
-    if (in_space_) {
-      const SurfaceDistance distance = in_space_->measure(mapped(decoded, options_.space, origin_));
-      level.space_distance = SpaceDistance{distance.mean_voxels, distance.max_voxels};
-    } else if (options_.has_lengths) {
-      level.space_distance = SpaceDistance{level.distance.mean_voxels, level.distance.max_voxels};
-    }
-  }
-
- private:
-  bool is_index_space() const { return *options_.space.affine() == *AffineGeometry().affine(); }
-
-  const CertifyOptions& options_;
-  ReferenceSurface by_index_;
-  Vec3d origin_;
-  IndexedMesh m0_in_space_;
-  std::optional<ReferenceSurface> in_space_;
-};
+  return equal;
+}
 
 }  // namespace
 
@@ -62,28 +38,66 @@ void describe_level(const IndexedMesh& decoded, const CertifyOptions& options, R
   level.measures = measure_surface(decoded, options.space);
 }
 
-Result<void> compare_with_m0(std::vector<ReconstructedLevel>& levels, const std::vector<IndexedMesh>& decoded,
-                             const IndexedMesh& m0, const CertifyOptions& options, Progress& progress) {
-  const double m0_volume = measure_surface(m0, options.space).volume;
-  std::optional<DistanceToM0> distance;
+/// Whether distances in the space differ from those in voxels.
+bool LevelComparison::is_mapped() const {
+  return options_.has_lengths && *options_.space.affine() != *AffineGeometry().affine();
+}
+
+void LevelComparison::prepare(TaskBoard& board) {
+  board.add(kComparisonUrgency, [this] { by_index_.emplace(m0_, DistanceOptions{.threads = options_.threads}); });
+  if (is_mapped()) board.add(kComparisonUrgency, [this] { prepare_in_space(); });
+  board.add(kComparisonUrgency, [this] { volume_ = measure_surface(m0_, options_.space).volume; });
+}
+
+void LevelComparison::prepare_in_space() {
+  origin_ = options_.space.map(to_double(m0_.positions.front()));
+  m0_in_space_ = mapped(m0_, options_.space, origin_);
+  in_space_.emplace(m0_in_space_, DistanceOptions{.threads = options_.threads});
+}
+
+void LevelComparison::measure_in_space(const IndexedMesh& decoded, ReconstructedLevel& level) const {
+  const SurfaceDistance distance = in_space_->measure(mapped(decoded, options_.space, origin_));
+  level.space_distance = SpaceDistance{distance.mean_voxels, distance.max_voxels};
+}
+
+Result<void> LevelComparison::compare(std::vector<ReconstructedLevel>& levels,
+                                      const std::vector<const IndexedMesh*>& decoded, TaskBoard& board,
+                                      Progress& progress) {
+  const auto never = [] { return false; };
+  progress.report("certify", 0);
+  const std::vector<std::size_t> equal = equal_levels(levels);
+  board.work_until(kComparisonUrgency, never);  // M0 is prepared
+  std::vector<std::size_t> measured;
   for (std::size_t k = levels.size(); k-- > 0;) {
-    if (progress.cancelled()) return Error{ErrorCode::cancelled, "certifying the levels was cancelled"};
-    progress.report("certify", 1 - static_cast<double>(k + 1) / static_cast<double>(levels.size()));
-    ReconstructedLevel& level = levels[k];
-    if (same_mesh(level.lod.mesh, m0)) {
-      if (options.has_lengths) level.space_distance = SpaceDistance{};
-      continue;
-    }
-    if (m0_volume != 0) level.volume_drift = (level.measures.volume - m0_volume) / m0_volume;
-    if (k + 1 < levels.size() && same_mesh(level.lod.mesh, levels[k + 1].lod.mesh)) {
-      level.distance = levels[k + 1].distance;
-      level.space_distance = levels[k + 1].space_distance;
-      continue;
-    }
-    if (!distance) distance.emplace(m0, options);
-    distance->measure(decoded[k], level);
+    if (same_mesh(levels[k].lod.mesh, m0_)) continue;
+    if (volume_ != 0) levels[k].volume_drift = (levels[k].measures.volume - volume_) / volume_;
+    if (equal[k] == k) measured.push_back(k);
   }
-  progress.report("certify", 1);
+  const std::size_t tasks = measured.size() * (is_mapped() ? 2 : 1);
+  const auto add = [&](const std::function<void()>& measure) {
+    board.add(kComparisonUrgency, [this, &progress, measure] {
+      if (!progress.cancelled()) measure();
+      ++ended_;
+    });
+  };
+  for (const std::size_t k : measured) {
+    const IndexedMesh& mesh = *decoded[k];
+    ReconstructedLevel& level = levels[k];
+    add([this, &mesh, &level] { level.distance = by_index_->measure(mesh); });
+    if (is_mapped()) add([this, &mesh, &level] { measure_in_space(mesh, level); });
+  }
+  board.work_until(kComparisonUrgency, [&] {
+    progress.report("certify", tasks == 0 ? 1 : static_cast<double>(ended_) / static_cast<double>(tasks));
+    return ended_ == tasks;
+  });
+  if (progress.cancelled()) return Error{ErrorCode::cancelled, "certifying the levels was cancelled"};
+  for (std::size_t k = levels.size(); k-- > 0;) {
+    levels[k].distance = levels[equal[k]].distance;
+    levels[k].space_distance = levels[equal[k]].space_distance;
+    if (options_.has_lengths && !levels[k].space_distance) {
+      levels[k].space_distance = SpaceDistance{levels[k].distance.mean_voxels, levels[k].distance.max_voxels};
+    }
+  }
   return {};
 }
 

@@ -11,32 +11,32 @@
 namespace geosis {
 namespace {
 
-std::vector<std::uint32_t> bodies_of(const LodLevel& level, std::span<const std::uint32_t> body_of_m0) {
-  if (body_of_m0.empty() || level.origin.empty()) return {body_of_m0.begin(), body_of_m0.end()};
+std::vector<std::uint32_t> bodies_of(std::span<const std::int32_t> origin, std::span<const std::uint32_t> body_of_m0) {
+  if (body_of_m0.empty() || origin.empty()) return {body_of_m0.begin(), body_of_m0.end()};
   std::vector<std::uint32_t> bodies;
-  bodies.reserve(level.origin.size());
-  for (const std::int32_t vertex : level.origin) bodies.push_back(body_of_m0[static_cast<std::size_t>(vertex)]);
+  bodies.reserve(origin.size());
+  for (const std::int32_t vertex : origin) bodies.push_back(body_of_m0[static_cast<std::size_t>(vertex)]);
   return bodies;
 }
 
 }  // namespace
 
-Result<VertexAttributes> attributes_of(const LodLevel& level, const AttributeSources& sources,
-                                       const Progress& progress) {
+Result<VertexAttributes> attributes_of(const IndexedMesh& mesh, std::span<const std::int32_t> origin,
+                                       const AttributeSources& sources, const Progress& progress) {
   VertexAttributes attributes;
-  attributes.body = bodies_of(level, sources.body);
+  attributes.body = bodies_of(origin, sources.body);
   if (sources.filled != nullptr) {
-    auto reliability = reliability_at(*sources.filled, level.mesh.positions, sources.threads, progress);
+    auto reliability = reliability_at(*sources.filled, mesh.positions, sources.threads, progress);
     if (!reliability) return std::move(reliability).error();
     attributes.reliability = *std::move(reliability);
   }
   if (sources.normals != nullptr) {
-    auto normals = normals_of(level.mesh, *sources.normals, sources.mirrored, sources.threads, progress);
+    auto normals = normals_of(mesh, *sources.normals, sources.mirrored, sources.threads, progress);
     if (!normals) return std::move(normals).error();
     attributes.normal = *std::move(normals);
   }
   if (sources.value != nullptr) {
-    auto values = sample_at(*sources.value, level.mesh.positions, sources.threads, progress);
+    auto values = sample_at(*sources.value, mesh.positions, sources.threads, progress);
     if (!values) return std::move(values).error();
     attributes.value = *std::move(values);
   }

@@ -5,7 +5,7 @@
 
 #include "engine/base/progress.h"
 #include "engine/base/result.h"
-#include "engine/mesh/lod_hierarchy.h"
+#include "engine/mesh/indexed_mesh.h"
 #include "engine/mesh/vertex_attributes.h"
 #include "engine/missing/filled_volume.h"
 #include "engine/volume/bricks.h"
@@ -25,9 +25,10 @@ struct AttributeSources {
 /// Values of a level's vertices: reliability and value at their positions, the body of the vertex of M0 that they
 /// descend from.
 ///
+/// origin   of each vertex of the mesh, as LodLevel has it.
 /// errors   malformed_input: a damaged brick.  cancelled.
-Result<VertexAttributes> attributes_of(const LodLevel& level, const AttributeSources& sources,
-                                       const Progress& progress);
+Result<VertexAttributes> attributes_of(const IndexedMesh& mesh, std::span<const std::int32_t> origin,
+                                       const AttributeSources& sources, const Progress& progress);
 
 /// Share of the vertices whose reliability says that not only measured samples count there; 0 without reliabilities.
 double interpolated_share(std::span<const std::uint8_t> reliability);

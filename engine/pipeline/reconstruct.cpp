@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "engine/pipeline/certify.h"
+#include "engine/pipeline/finish_levels.h"
 #include "engine/pipeline/level_attributes.h"
 #include "engine/pipeline/output_space.h"
 #include "engine/pipeline/stages.h"
@@ -74,110 +76,112 @@ Result<void> check_attribute_volume(const ReconstructInput& input, const Reconst
   return Error{ErrorCode::invalid_argument, "the attribute volume has another shape than the volume"};
 }
 
-/// Whether level 0 is M0 itself, the reference of every certificate.
-bool is_m0(const LevelTarget& level) {
-  return level.ratio == 1.0 && !level.drop.any();
-}
-
-Result<LodHierarchy> simplify(IndexedMesh m0, const Run& run) {
-  const StageTimer timer(run.timings.simplify);
+BuildLodsOptions simplification(const ReconstructOptions& options) {
   BuildLodsOptions build;
-  build.levels = run.options.levels;
-  build.strategy = run.options.strategy;
-  build.placement = run.options.placement;
-  build.seed = run.options.seed;
-  build.threads = run.options.threads;
-  std::optional<ReferenceSurface> reference;  // M0 is prepared once, for all the levels that are measured
-  build.measure = [&](const IndexedMesh& original, const IndexedMesh& level) {
-    if (!reference) reference.emplace(original, DistanceOptions{.threads = run.options.threads});
-    return reference->measure(level).max_voxels;
+  build.levels = options.levels;
+  build.strategy = options.strategy;
+  build.placement = options.placement;
+  build.seed = options.seed;
+  build.threads = options.threads;
+  // M0 is prepared once, for all the levels that are measured.
+  build.measure = [reference = std::make_shared<std::optional<ReferenceSurface>>(), threads = options.threads](
+                      const IndexedMesh& m0, const IndexedMesh& level) {
+    if (!*reference) reference->emplace(m0, DistanceOptions{.threads = threads});
+    return (*reference)->measure(level).max_voxels;
   };
-  return build_lods(std::move(m0), build, run.progress);
+  return build;
 }
 
-/// The level's values, its share of interpolated vertices, and its bytes.
-Result<void> encode(const AttributeSources& sources, const Run& run, ReconstructedLevel& level) {
-  const StageTimer timer(run.timings.encode);
-  auto attributes = attributes_of(level.lod, sources, run.progress);
-  if (!attributes) return std::move(attributes).error();
-  level.attributes = *std::move(attributes);
-  level.interpolated_share = interpolated_share(level.attributes.reliability);
-  if (!run.options.attributes.reliability) level.attributes.reliability.clear();
-  auto encoded = encode_level(level.lod.mesh, level.attributes, run.encode, run.progress);
-  if (!encoded) return std::move(encoded).error();
-  level.encoded = *std::move(encoded);
-  return {};
-}
-
-/// What a client will see of the level.
-Result<IndexedMesh> decode(const EncodedLevel& encoded, const Run& run) {
-  const StageTimer timer(run.timings.certify);
-  std::vector<std::span<const std::byte>> parts;
-  for (const EncodedPart& part : encoded.parts) parts.emplace_back(part.bytes);
-  auto decoded = decode_level(parts, run.options.threads, run.progress);
-  if (!decoded) return std::move(decoded).error();
-  return std::move(decoded->mesh);
-}
-
-void describe(const IndexedMesh& decoded, const Run& run, ReconstructedLevel& level) {
-  const StageTimer timer(run.timings.certify);
-  describe_level(decoded, run.certify(), level);
-}
-
-/// Encodes the levels from the coarsest on and describes what they decode to; the decoded meshes are returned for the
-/// comparison with M0, which nobody who waits for a picture should wait for.
-Result<std::vector<IndexedMesh>> encode_levels(std::vector<ReconstructedLevel>& levels, const AttributeSources& sources,
-                                               const Run& run) {
-  std::vector<IndexedMesh> decoded(levels.size());
-  std::size_t triangles = 0, done = 0;
-  for (const ReconstructedLevel& level : levels) triangles += level.lod.mesh.triangles.size();
-  for (std::size_t k = levels.size(); k-- > 0;) {
-    if (run.progress.cancelled()) return kCancelled;
-    run.progress.report("encode", static_cast<double>(done) / static_cast<double>(triangles));
-    if (auto encoded = encode(sources, run, levels[k]); !encoded) return std::move(encoded).error();
-    auto mesh = decode(levels[k].encoded, run);
-    if (!mesh) return std::move(mesh).error();
-    decoded[k] = *std::move(mesh);
-    describe(decoded[k], run, levels[k]);
-    if (run.on_level) run.on_level(k, levels[k]);
-    done += levels[k].lod.mesh.triangles.size();
+/// Everything after M0: levels are simplified one by one, and finished beside that and after it.
+class Levels {
+ public:
+  Levels(LabelledSurface m0, const StageSamples& samples, const Run& run)
+      : run_(run),
+        body_(std::move(m0.body)),
+        levels_(run.options.levels.size()),
+        m0_(begins_with_m0(run.options.levels) ? levels_.front().lod.mesh : m0_apart_),
+        comparison_(m0_, run.certify()),
+        finisher_(finish_options(samples), m0_, run.options.threads - 1, run.progress) {
+    for (std::size_t k = 0; k < levels_.size(); ++k) levels_[k].asked = run.options.levels[k];
+    m0_ = std::move(m0.mesh);
   }
-  run.progress.report("encode", 1);
-  return decoded;
-}
 
-std::vector<ReconstructedLevel> take_levels(std::vector<LodLevel>&& lods, const std::vector<LevelTarget>& asked) {
-  std::vector<ReconstructedLevel> levels(lods.size());
-  for (std::size_t k = 0; k < levels.size(); ++k) {
-    levels[k].asked = asked[k];
-    levels[k].lod = std::move(lods[k]);
+  Result<Reconstruction> make() {
+    auto made = timed(run_.timings.simplify, [&] { return simplify(); });
+    if (made) made = timed(run_.timings.encode, [&] { return finish(); });
+    if (made) made = timed(run_.timings.certify, [&] { return compare(); });
+    if (!made) return std::move(made).error();
+    return Reconstruction{std::move(levels_)};
   }
-  return levels;
-}
 
-/// Everything after M0.
-Result<Reconstruction> make_levels(LabelledSurface m0, const StageSamples& samples, const Run& run) {
-  const std::vector<std::uint32_t> body = std::move(m0.body);
-  const AttributeSources sources{
-      .filled = samples.filled,
-      .body = run.options.attributes.body ? std::span(body) : std::span<const std::uint32_t>(),
-      .normals = run.options.normals ? samples.samples : nullptr,
-      .mirrored = run.space.mirrored(),
-      .value = run.options.attributes.value ? run.input.attribute_volume : nullptr,
-      .threads = run.options.threads};
-  const bool m0_is_asked = is_m0(run.options.levels.front());
-  const IndexedMesh m0_apart = m0_is_asked ? IndexedMesh{} : m0.mesh;
-  auto lods = simplify(std::move(m0.mesh), run);
-  if (!lods) return std::move(lods).error();
-  Reconstruction result{take_levels(std::move(lods->levels), run.options.levels)};
-  auto decoded = encode_levels(result.levels, sources, run);
-  if (!decoded) return std::move(decoded).error();
-  const IndexedMesh& reference = m0_is_asked ? result.levels.front().lod.mesh : m0_apart;
-  const StageTimer timer(run.timings.certify);
-  auto compared = compare_with_m0(result.levels, *decoded, reference, run.certify(), run.progress);
-  if (!compared) return std::move(compared).error();
-  return result;
-}
+ private:
+  FinishOptions finish_options(const StageSamples& samples) const {
+    const ReconstructOptions& options = run_.options;
+    return {.sources = {.filled = samples.filled,
+                        .body = options.attributes.body ? std::span(body_) : std::span<const std::uint32_t>(),
+                        .normals = options.normals ? samples.samples : nullptr,
+                        .mirrored = run_.space.mirrored(),
+                        .value = options.attributes.value ? run_.input.attribute_volume : nullptr,
+                        .threads = options.threads},
+            .keep_reliability = options.attributes.reliability,
+            .encode = run_.encode,
+            .certify = run_.certify()};
+  }
+
+  Result<void> simplify() {
+    const BuildLodsOptions build = simplification(run_.options);
+    if (build.placement == Placement::subset) return simplify_at_once(build);
+    return build_lods_one_by_one(m0_, build, run_.progress, [&](std::size_t k, LodLevel lod) {
+      ReconstructedLevel& level = levels_[k];
+      const bool is_m0 = &level.lod.mesh == &m0_;
+      if (!is_m0) level.lod = std::move(lod);
+      finisher_.add(k, level, level.lod.mesh);
+    });
+  }
+
+  /// Levels that share their vertices: M0's get other numbers too.
+  Result<void> simplify_at_once(const BuildLodsOptions& build) {
+    const bool m0_is_asked = begins_with_m0(build.levels);
+    auto lods = build_lods(m0_is_asked ? std::move(m0_) : m0_, build, run_.progress);
+    if (!lods) return std::move(lods).error();
+    for (std::size_t k = 0; k < levels_.size(); ++k) {
+      levels_[k].lod = std::move(lods->levels[k]);
+      finisher_.add(k, levels_[k], levels_[k].lod.mesh);
+    }
+    return {};
+  }
+
+  /// Coarsest first. The comparison with M0, which nobody who waits for a picture should wait for, comes last.
+  Result<void> finish() {
+    std::size_t triangles = 0, done = 0;
+    for (const ReconstructedLevel& level : levels_) triangles += level.lod.mesh.triangles.size();
+    if (levels_.size() > 1 || !begins_with_m0(run_.options.levels)) comparison_.prepare(finisher_.board());
+    for (std::size_t k = levels_.size(); k-- > 0;) {
+      if (run_.progress.cancelled()) return kCancelled;
+      run_.progress.report("encode", static_cast<double>(done) / static_cast<double>(triangles));
+      if (auto finished = finisher_.finish(k); !finished) return finished;
+      if (run_.on_level) run_.on_level(k, levels_[k]);
+      done += levels_[k].lod.mesh.triangles.size();
+    }
+    run_.progress.report("encode", 1);
+    return {};
+  }
+
+  Result<void> compare() {
+    if (run_.progress.cancelled()) return kCancelled;
+    std::vector<const IndexedMesh*> decoded;
+    for (std::size_t k = 0; k < levels_.size(); ++k) decoded.push_back(&finisher_.decoded(k));
+    return comparison_.compare(levels_, decoded, finisher_.board(), run_.progress);
+  }
+
+  const Run& run_;
+  const std::vector<std::uint32_t> body_;
+  std::vector<ReconstructedLevel> levels_;
+  IndexedMesh m0_apart_;  // when it is no level
+  IndexedMesh& m0_;
+  LevelComparison comparison_;
+  LevelFinisher finisher_;  // last: its tasks use all of the above
+};
 
 Result<Reconstruction> run_stages(const Run& run) {
   auto samples = timed(run.timings.fill, [&] { return fill_stage(run.input, run.options, run.progress); });
@@ -188,7 +192,7 @@ Result<Reconstruction> run_stages(const Run& run) {
   if (!m0) return std::move(m0).error();
   if (m0->mesh.triangles.empty()) return Reconstruction{};
   if (run.progress.cancelled()) return kCancelled;
-  return make_levels(*std::move(m0), *samples, run);
+  return Levels(*std::move(m0), *samples, run).make();
 }
 
 }  // namespace

@@ -64,7 +64,7 @@ struct ReconstructOptions {
   std::optional<int> position_bits = std::nullopt;             ///< unset = chosen so that topology survives
   std::optional<int> speed = std::nullopt;                     ///< unset = 7
   bool normals = false;                                        ///< at the vertices, from the field's gradient
-  int threads = 1;
+  int threads = 1;  ///< of each stage; levels are encoded beside their simplification by spare threads
 };
 
 /// Two-sided distance between surfaces in the units of a space.
@@ -90,7 +90,8 @@ struct Reconstruction {
   std::vector<ReconstructedLevel> levels;  ///< level 0 = finest; empty when nothing is in the range
 };
 
-/// Seconds of each stage, for the caller's eyes only: never part of a result.
+/// Seconds of each stage on the caller's clock, for the caller's eyes only: never part of a result. Levels are encoded
+/// and described by spare threads while finer and coarser ones are made: `encode` is what is left of that afterwards.
 struct StageTimings {
   double fill = 0, extract = 0, simplify = 0, encode = 0, certify = 0;
 };

@@ -1,165 +1,135 @@
 #include "engine/simplify/build_lods.h"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <memory>
+#include <numeric>
 #include <string>
 #include <utility>
 
-#include "engine/mesh/check.h"
-#include "engine/mesh/corner_table.h"
+#include "engine/simplify/check_m0.h"
 #include "engine/simplify/check_targets.h"
-#include "engine/simplify/error_bound.h"
-#include "engine/simplify/reducer.h"
+#include "engine/simplify/level_builder.h"
 #include "engine/simplify/share_vertices.h"
-#include "engine/simplify/specks.h"
-#include "engine/simplify/watch.h"
 #include "engine/simplify/window_sizes.h"
 
 namespace geosis {
 namespace {
 
-constexpr float kLargestCoordinate = 131'072;  // voxels; beyond, float32 does not hold all lattice points
-
 /// Voxels. At 1/4 and 1/16, where levels should keep their count, next to nothing comes near the cap.
 constexpr double kErrorCapAtRatioOne = 0.12;
 
-const Error kCancelled = {ErrorCode::cancelled, "levels of detail: cancelled"};
-
-Error invalid(std::string message) {
-  return {ErrorCode::invalid_argument, std::move(message)};
+Result<void> check_input(const IndexedMesh& m0, const BuildLodsOptions& options, Progress& progress) {
+  if (auto sound = check_targets(options); !sound) return sound;
+  if (auto sound = check_m0(m0); !sound) return sound;
+  progress.report("simplify", 0);
+  if (progress.cancelled()) return Error{ErrorCode::cancelled, "levels of detail: cancelled"};
+  return {};
 }
 
-bool on_lattice(float x) {
-  const bool in_range = std::abs(x) <= kLargestCoordinate;  // false for NaN
-  const float steps = in_range ? x * kLatticeStepsPerVoxel : 0.5f;
-  return steps == static_cast<float>(static_cast<std::int32_t>(steps));
-}
-
-Result<void> check_positions(const std::vector<Vec3f>& positions) {
-  for (std::size_t v = 0; v < positions.size(); ++v) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (on_lattice(positions[v][axis])) continue;
-      return invalid("vertex " + std::to_string(v) + ": coordinate " + std::to_string(positions[v][axis]) +
-                     "; expected a multiple of 1/64 within 131072 of zero");
+/// Level after level. One whose error the level before exceeds already begins anew from M0.
+Result<void> build_in_order(const IndexedMesh& m0, const BuildLodsOptions& options, const WindowSizes& sizes,
+                            Progress& progress, const TakeLevel& take) {
+  LevelBuilder builder(m0, options, sizes, progress);
+  for (std::size_t k = 0; k < options.levels.size(); ++k) {
+    if (k == 0 && begins_with_m0(options.levels)) {
+      take(0, {});
+      continue;
     }
+    auto level = builder.make(options.levels[k]);
+    if (level && !*level) {
+      if (auto begun = builder.begin_anew(); !begun) return begun;
+      level = builder.make(options.levels[k]);
+    }
+    if (!level) return std::move(level).error();
+    // What was dropped may lie farther off than any simplification: then nothing coarser than the rest will do.
+    take(k, *level ? **std::move(level) : builder.as_it_is());
   }
   return {};
 }
 
-bool indices_in_range(const IndexedMesh& mesh) {
-  const auto vertices = static_cast<std::uint32_t>(mesh.positions.size());
-  bool in_range = mesh.positions.size() <= std::numeric_limits<std::int32_t>::max();
-  for (const auto& [a, b, c] : mesh.triangles) {
-    in_range &= (static_cast<std::uint32_t>(a) < vertices) & (static_cast<std::uint32_t>(b) < vertices) &
-                (static_cast<std::uint32_t>(c) < vertices);
+/// What is dropped from each level: what it asks for and what those before it do.
+std::vector<DropSpecks> drops_by_level(const std::vector<LevelTarget>& levels) {
+  std::vector<DropSpecks> drops;
+  DropSpecks all;
+  for (const LevelTarget& level : levels) {
+    all.max_voxels = std::max(all.max_voxels, level.drop.max_voxels);
+    all.max_error = std::max(all.max_error, level.drop.max_error);
+    drops.push_back(all);
   }
-  return in_range;
+  return drops;
 }
 
-/// Says what is wrong with a mesh that is no manifold.
-Error fault_of(const IndexedMesh& m0) {
-  const auto table = build_corner_table(m0);
-  if (!table) return table.error();
-  if (auto fans = check_fans(*table, m0.positions.size()); !fans) return std::move(fans).error();
-  return {ErrorCode::internal, "levels of detail: a manifold was taken for something else"};
-}
-
-std::int64_t triangles_for(double ratio, std::size_t triangles) {
-  return static_cast<std::int64_t>(ratio * static_cast<double>(triangles) + 0.5);
-}
-
-/// Triangles between M0 and the last level, as far as that is known before.
-std::int64_t triangles_to_remove(const BuildLodsOptions& options, std::size_t triangles) {
-  double least = 1;
-  for (const LevelTarget& target : options.levels) least = target.ratio ? *target.ratio : 0;
-  return static_cast<std::int64_t>(triangles) - triangles_for(least, triangles);
-}
-
-/// Makes one level after the other.
-class Builder {
+/// Levels of which each has a subset of the vertices of all finer ones, so that none can begin anew: each is made from
+/// the next finer one, whatever order they are asked for in.
+class NestedLevels {
  public:
-  Builder(const IndexedMesh& m0, const BuildLodsOptions& options, const WindowSizes& sizes, Progress& progress)
-      : m0_(m0),
-        options_(options),
-        watch_(progress, triangles_to_remove(options, m0.triangles.size())),
-        reducer_options_{{options.strategy, options.placement, options.seed}, sizes, options.threads},
-        reducer_(m0, reducer_options_, watch_) {}
+  NestedLevels(const IndexedMesh& m0, const BuildLodsOptions& options, const WindowSizes& sizes, Progress& progress)
+      : m0_(m0), options_(options), sizes_(sizes), progress_(progress), drops_(drops_by_level(options.levels)) {
+    order_.resize(options.levels.size());
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
+  }
 
-  /// The level's mesh is left empty where it is M0.
-  Result<LodLevel> make(const LevelTarget& target) {
-    if (target.drop.any()) {
-      if (const auto dropped = drop(target.drop); !dropped) return dropped.error();
+  Result<std::vector<LodLevel>> build() {
+    for (;;) {
+      std::vector<LodLevel> levels(order_.size());
+      const auto too_coarse = build_in_order(levels);
+      if (!too_coarse) return too_coarse.error();
+      if (*too_coarse == order_.size()) return levels;
+      if (auto moved = move_forward(*too_coarse); !moved) return std::move(moved).error();
     }
-    Result<LodLevel> level = target.max_error ? make_within(*target.max_error) : make_for(target);
-    if (!level) return level;
-    if (target.ratio) level->asked_ratio = *target.ratio;
-    if (specks_) level->dropped_components = specks_->dropped();
-    return level;
   }
 
  private:
-  Result<void> drop(const DropSpecks& limits) {
-    if (!specks_) specks_ = std::make_unique<Specks>(m0_);
-    if (!specks_->drop(limits)) return {};
-    return end_of(reducer_.remove([&](std::int32_t v) { return specks_->is_dropped(v); }));
-  }
-
-  Result<LodLevel> make_for(const LevelTarget& target) {
-    if (target.ratio == 1.0 && !specks_) return LodLevel{};
-    Goal goal;
-    if (target.ratio) goal.triangles = triangles_for(*target.ratio, m0_.triangles.size());
-    if (target.max_cost) goal.max_cost = static_cast<float>(*target.max_cost);
-    if (target.error_cap) {
-      goal.max_error = static_cast<float>(*target.error_cap);
-    } else if (target.ratio) {
-      goal.max_error = static_cast<float>(default_error_cap(*target.ratio));
+  /// returns   the place of the first level whose error the one before it exceeds already; none = their number.
+  Result<std::size_t> build_in_order(std::vector<LodLevel>& levels) const {
+    LevelBuilder builder(m0_, options_, sizes_, progress_);
+    for (std::size_t place = begins_with_m0(options_.levels) ? 1 : 0; place < order_.size(); ++place) {
+      const std::size_t k = order_[place];
+      LevelTarget target = options_.levels[k];
+      target.drop = drops_[k];
+      auto level = builder.make(target);
+      if (!level) return std::move(level).error();
+      if (!*level && may_move(place)) return place;
+      levels[k] = *level ? **std::move(level) : builder.as_it_is();
     }
-    if (auto reduced = end_of(reducer_.reduce(goal)); !reduced) return std::move(reduced).error();
-    LodLevel level = reducer_.snapshot();
-    level.cost = reducer_.max_cost();
-    if (target.ratio) level.stopped_by = reducer_.stopped_by();
-    return level;
+    return order_.size();
   }
 
-  Result<LodLevel> make_within(double max_error) {
-    const auto measure = [&](const IndexedMesh& mesh) { return options_.measure(m0_, mesh); };
-    PassEnd end = PassEnd::done;
-    auto level = reduce_within(reducer_, max_error, measure, end);
-    if (!level && end == PassEnd::done) {
-      if (options_.placement == Placement::subset) {
-        return invalid("levels of detail: max_error " + std::to_string(max_error) + " after a coarser level");
-      }
-      // The level before is too far off already: begin anew.
-      reducer_ = Reducer(m0_, reducer_options_, watch_);
-      if (specks_ && specks_->dropped() > 0)
-        end = reducer_.remove([&](std::int32_t v) { return specks_->is_dropped(v); });
-      if (end == PassEnd::done) level = reduce_within(reducer_, max_error, measure, end);
+  /// A level that another one by error stands before fails by what was dropped: it is as far off wherever it stands.
+  bool may_move(std::size_t place) const {
+    if (place == 0) return false;
+    const std::size_t before = order_[place - 1];
+    return !(before == 0 && begins_with_m0(options_.levels)) && !options_.levels[before].max_error;
+  }
+
+  Result<void> move_forward(std::size_t place) {
+    const std::size_t k = order_[place], before = order_[place - 1];
+    if (drops_[k].max_voxels > drops_[before].max_voxels || drops_[k].max_error > drops_[before].max_error) {
+      return Error{ErrorCode::unsupported,
+                   "levels of detail: level " + std::to_string(before) + " is farther from M0 than the max_error of " +
+                       std::to_string(*options_.levels[k].max_error) + " of level " + std::to_string(k) +
+                       ", which drops components that it keeps; with subset one must have all vertices of the other"};
     }
-    if (auto reduced = end_of(end); !reduced) return std::move(reduced).error();
-    // What was dropped may lie farther off than any simplification: then nothing coarser than the rest will do.
-    return level ? *std::move(level) : reducer_.snapshot();
-  }
-
-  Result<void> end_of(PassEnd end) const {
-    if (end == PassEnd::cancelled) return kCancelled;
-    if (end == PassEnd::not_manifold) return fault_of(m0_);
+    std::swap(order_[place - 1], order_[place]);
     return {};
   }
 
   const IndexedMesh& m0_;
   const BuildLodsOptions& options_;
-  Watch watch_;
-  const ReducerOptions reducer_options_;
-  Reducer reducer_;
-  std::unique_ptr<Specks> specks_;
+  const WindowSizes& sizes_;
+  Progress& progress_;
+  std::vector<DropSpecks> drops_;
+  std::vector<std::size_t> order_;  // in which levels are made, finest first
 };
 
-Result<void> check_input(const IndexedMesh& m0, const BuildLodsOptions& options) {
-  if (auto sound = check_targets(options); !sound) return sound;
-  if (auto lattice = check_positions(m0.positions); !lattice) return lattice;
-  if (!indices_in_range(m0)) return fault_of(m0);
-  return {};
+Result<std::vector<LodLevel>> build_all(const IndexedMesh& m0, const BuildLodsOptions& options,
+                                        const WindowSizes& sizes, Progress& progress) {
+  if (options.placement == Placement::subset) return NestedLevels(m0, options, sizes, progress).build();
+  std::vector<LodLevel> levels(options.levels.size());
+  auto built = build_in_order(m0, options, sizes, progress,
+                              [&](std::size_t k, LodLevel level) { levels[k] = std::move(level); });
+  if (!built) return std::move(built).error();
+  return levels;
 }
 
 }  // namespace
@@ -170,34 +140,37 @@ std::vector<LevelTarget> by_ratio(const std::vector<double>& ratios) {
   return levels;
 }
 
+bool begins_with_m0(const std::vector<LevelTarget>& levels) {
+  return !levels.empty() && levels.front().ratio == 1.0 && !levels.front().drop.any();
+}
+
 double default_error_cap(double ratio) {
   return kErrorCapAtRatioOne / std::sqrt(ratio);
 }
 
 Result<LodHierarchy> build_lods_in_windows(IndexedMesh m0, const BuildLodsOptions& options, const WindowSizes& sizes,
                                            Progress& progress) {
-  if (auto sound = check_input(m0, options); !sound) return std::move(sound).error();
-  progress.report("simplify", 0);
-  if (progress.cancelled()) return kCancelled;
-  LodHierarchy hierarchy;
-  bool first_is_m0 = false;
-  {
-    Builder builder(m0, options, sizes, progress);
-    for (const LevelTarget& target : options.levels) {
-      auto level = builder.make(target);
-      if (!level) return std::move(level).error();
-      first_is_m0 = first_is_m0 || (target.ratio == 1.0 && level->dropped_components == 0);
-      hierarchy.levels.push_back(*std::move(level));
-    }
-  }
+  if (auto sound = check_input(m0, options, progress); !sound) return std::move(sound).error();
+  auto levels = build_all(m0, options, sizes, progress);
+  if (!levels) return std::move(levels).error();
+  LodHierarchy hierarchy{*std::move(levels)};
   const std::size_t m0_vertices = m0.positions.size();
-  if (first_is_m0) hierarchy.levels.front().mesh = std::move(m0);
+  if (begins_with_m0(options.levels)) hierarchy.levels.front().mesh = std::move(m0);
   if (options.placement == Placement::subset) share_vertices(hierarchy, m0_vertices);
   return hierarchy;
 }
 
 Result<LodHierarchy> build_lods(IndexedMesh m0, const BuildLodsOptions& options, Progress& progress) {
   return build_lods_in_windows(std::move(m0), options, {}, progress);
+}
+
+Result<void> build_lods_one_by_one(const IndexedMesh& m0, const BuildLodsOptions& options, Progress& progress,
+                                   const TakeLevel& take) {
+  if (options.placement == Placement::subset) {
+    return Error{ErrorCode::unsupported, "levels of detail: levels that share their vertices come all at once"};
+  }
+  if (auto sound = check_input(m0, options, progress); !sound) return sound;
+  return build_in_order(m0, options, {}, progress, take);
 }
 
 }  // namespace geosis

@@ -36,6 +36,9 @@ struct LevelTarget {
 /// One level a ratio.
 std::vector<LevelTarget> by_ratio(const std::vector<double>& ratios);
 
+/// Whether the first of these levels is M0 itself.
+bool begins_with_m0(const std::vector<LevelTarget>& levels);
+
 /// The cap of a level of that ratio for which none is given, in voxels.
 double default_error_cap(double ratio);
 
@@ -57,13 +60,24 @@ struct BuildLodsOptions {
 /// returns  one level per target, with the topology of m0 without the dropped components: Euler characteristic,
 ///          components, genus of each component, boundary loops, orientation. Vertices stay on the 1/64 lattice. A
 ///          level that cannot be reached stops at its floor or its error cap and says so. Each vertex knows the one of
-///          m0 it descends from. With Placement::subset every level's positions are the first of the level before: all
-///          share one array, for which level 0's vertices are put in another order. The same bytes for any number of
-///          threads.
+///          m0 it descends from. With Placement::subset a level's positions are the first of every level that has
+///          more: all share one array, for which M0's vertices are put in another order. The same bytes for any number
+///          of threads.
 /// errors   invalid_argument: targets that are out of range, not coarser one by one, or ambiguous; an m0 that is no
 ///          manifold or off the lattice.  cancelled.
 /// source   Garland & Heckbert 1997 (quadrics); Lindstrom & Turk 1998 (volume); the link condition of Dey et al. 1999;
 ///          Tavares et al., Table 1 (multiple choice).
 Result<LodHierarchy> build_lods(IndexedMesh m0, const BuildLodsOptions& options, Progress& progress);
+
+/// Takes level `number` as soon as it is made. A first level that is M0 itself comes at once, with an empty mesh.
+using TakeLevel = std::function<void(std::size_t number, LodLevel level)>;
+
+/// build_lods for callers that go on with a level while the next one is made. Levels come in order, finest first, on
+/// the caller's thread.
+///
+/// errors   those of build_lods; levels that were taken before are sound, unless m0 is no manifold.  unsupported:
+///          Placement::subset, whose vertices have their numbers when the last level is there.
+Result<void> build_lods_one_by_one(const IndexedMesh& m0, const BuildLodsOptions& options, Progress& progress,
+                                   const TakeLevel& take);
 
 }  // namespace geosis

@@ -16,9 +16,14 @@ void fill_origin(LodLevel& level) {
 
 /// New number of each vertex of M0: those of the coarsest level first, then what the next finer one adds, ...
 std::vector<std::int32_t> numbers_by_level(const LodHierarchy& hierarchy, std::size_t m0_vertices) {
+  std::vector<const LodLevel*> coarsest_first;
+  for (auto level = hierarchy.levels.rbegin(); level != hierarchy.levels.rend(); ++level) {
+    coarsest_first.push_back(&*level);
+  }
+  std::ranges::stable_sort(coarsest_first, {}, [](const LodLevel* level) { return level->origin.size(); });
   std::vector<std::int32_t> number(m0_vertices, -1);
   std::int32_t next = 0;
-  for (auto level = hierarchy.levels.rbegin(); level != hierarchy.levels.rend(); ++level) {
+  for (const LodLevel* level : coarsest_first) {
     for (const std::int32_t v : level->origin) {
       if (number[v] < 0) number[v] = next++;
     }

@@ -1,162 +1,235 @@
-// What levels of detail are worth: triangles, distance to M0, drift of the volume, components, intersecting pairs, and
-// the CPU time they took; the peers beside them at equal counts.
+// What levels of detail are worth: topology, distance to M0 both ways, rims, drift of the volume, intersecting pairs
+// and CPU time; other libraries beside them at equal counts. A table on the terminal, and everything as JSON.
 //
-// usage: level_quality [nodes an axis = 128] [peers = 1]
-//
-// Surfaces: a channel (a compact body), thin reflectors (a busy volume), a gyroid with noise.
+// usage: level_quality [options] SURFACE...      surfaces: see bench_mesh.h
 
-#include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <ctime>
+#include <fstream>
 #include <limits>
 #include <string>
+#include <thread>
 #include <vector>
 
-#include "engine/analysis/self_intersections.h"
-#include "engine/analysis/surface_distance.h"
-#include "engine/isosurface/extract.h"
-#include "engine/mesh/components.h"
-#include "engine/simplify/build_lods.h"
-#include "engine/volume/brick_file.h"
-#include "engine/volume/synthetic_survey.h"
-#include "tests/engine/simplify/field_mesh.h"
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 
-#ifdef GEOSIS_HAVE_MESHOPTIMIZER
-#include <meshoptimizer.h>
-#endif
-#ifdef GEOSIS_HAVE_CGAL
-#include "bench/engine/simplify/garland_heckbert.h"
-#endif
+#include "bench/engine/simplify/bench_mesh.h"
+#include "bench/engine/simplify/level_measures.h"
+#include "bench/engine/simplify/peers.h"
+#include "engine/simplify/build_lods.h"
 
 namespace geosis {
 namespace {
 
-constexpr double kRatios[] = {0.25, 0.0625, 0.015625, 0.00390625};
+using Json = nlohmann::ordered_json;
 
-IndexedMesh survey_surface(SurveyKind kind, int nodes, IsoRange range) {
-  const GridShape shape{nodes, nodes, nodes};
-  const SyntheticSurvey survey({.shape = shape, .kind = kind, .polygon = false, .holes = false});
-  std::vector<float> samples(static_cast<std::size_t>(shape.count()));
-  const auto length = static_cast<std::size_t>(nodes);
-  for (int i = 0; i < nodes; ++i) {
-    for (int j = 0; j < nodes; ++j) {
-      survey.fill_trace(i, j, std::span(samples).subspan(static_cast<std::size_t>(i * nodes + j) * length, length));
-    }
-  }
-  NoProgress progress;
-  auto mesh =
-      extract_body(*make_bricked_volume(shape, samples), range, {.region = whole(shape), .threads = 2}, progress);
-  return mesh ? *std::move(mesh) : IndexedMesh{};
-}
-
-IndexedMesh rough_gyroid(int nodes) {
-  const NodeField smooth = gyroid(20, 0.2);
-  const NodeField rough = noise(7);
-  const std::array<int, 3> shape{nodes, nodes, nodes};
-  return mesh_field(
-      shape, closed_on_faces(shape, [&](int i, int j, int k) { return smooth(i, j, k) + 0.1 * rough(i, j, k); }));
-}
-
-double volume_of(const IndexedMesh& mesh) {
-  double six = 0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    six += dot(to_double(mesh.positions[a]), cross(to_double(mesh.positions[b]), to_double(mesh.positions[c])));
-  }
-  return six / 6;
-}
+struct Arguments {
+  std::vector<std::string> surfaces;
+  std::vector<double> ratios = {0.25, 0.05, 0.01};
+  std::vector<double> peer_ratios = {0.25, 0.05, 0.01};
+  std::vector<std::string> peers;  // names' beginnings; none = all
+  bool default_caps = false, variants = false, no_peers = false;
+  std::string out, commit;
+};
 
 double cpu_seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
-/// One surface and all that is measured against it.
+std::string first_line_of(const std::string& path, const std::string& key) {
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with(key)) return line;
+  }
+  return {};
+}
+
+Json to_json(const DistanceSpread& spread) {
+  return {{"mean", spread.mean}, {"p99", spread.p99}, {"max", spread.max}};
+}
+
+Json to_json(const TwoWays& ways) {
+  return {{"from_m0", to_json(ways.away)}, {"to_m0", to_json(ways.back)}};
+}
+
+Json to_json(const IntersectingPairs& pairs) {
+  return {{"within_a_sheet", pairs.within_a_sheet},
+          {"between_sheets", pairs.between_sheets},
+          {"between_components", pairs.between_components}};
+}
+
+Json to_json(const LevelMeasures& measures) {
+  Json json = {{"triangles", measures.triangles},
+               {"components", measures.components},
+               {"euler", measures.euler},
+               {"genus", measures.genus},
+               {"boundary_loops", measures.boundary_loops},
+               {"topology", measures.topology},
+               {"distance_voxels", to_json(measures.distance)},
+               {"volume_drift", measures.volume_drift}};
+  if (measures.rim) json["rim_distance_voxels"] = to_json(*measures.rim);
+  if (measures.pairs) json["intersecting_pairs"] = to_json(*measures.pairs);
+  return json;
+}
+
+const char* name_of(StoppedBy stopped) {
+  switch (stopped) {
+    case StoppedBy::none:
+      return "";
+    case StoppedBy::floor:
+      return "floor";
+    case StoppedBy::error_cap:
+      return "error_cap";
+  }
+  return "";
+}
+
+/// One surface: its rows are printed as they come and kept for the JSON.
 class Report {
  public:
-  Report(const char* name, const IndexedMesh& m0)
-      : m0_(m0), reference_(m0, {.samples = 100'000, .threads = 2}), volume_(volume_of(m0)) {
-    std::printf("\n%s: %zu triangles, %d components, %lld intersecting pairs\n", name, m0.triangles.size(),
-                find_components(m0).count, static_cast<long long>(count_intersecting_pairs(m0, 2)));
-    std::printf("  %-22s %9s %8s %8s %8s %9s %6s %6s\n", "", "triangles", "cpu s", "mean", "max", "volume %", "comps",
-                "pairs");
+  explicit Report(const BenchMesh& mesh) : mesh_(mesh), against_(mesh) {
+    const LevelMeasures m0 = against_.measure(mesh.m0, {}, true);
+    json_ = {{"surface", mesh.name}, {"data_sha256", mesh.data_sha256}, {"m0", to_json(m0)}, {"levels", Json::array()}};
+    std::printf("\n%s: euler %lld, genus %lld, %lld components, %lld loops\n", mesh.name.c_str(),
+                static_cast<long long>(m0.euler), static_cast<long long>(m0.genus),
+                static_cast<long long>(m0.components), static_cast<long long>(m0.boundary_loops));
+    std::printf("  %-24s %9s %7s %7s %7s %6s %6s %6s %6s %8s %15s %17s  %s\n", "", "triangles", "cpu s", "from M0",
+                "to M0", "p99", "p99", "max", "max", "drift %", "pairs in/sh/co", "rim mean p99 max", "topology");
+    print("M0", m0, 0);
   }
 
-  /// on_lattice   pairs are decided exactly on the lattice, which peers leave.
-  void add(const std::string& name, const IndexedMesh& level, double cpu, bool on_lattice) const {
-    const SurfaceDistance distance = reference_.measure(level);
-    const std::string pairs = on_lattice ? std::to_string(count_intersecting_pairs(level, 2)) : "-";
-    std::printf("  %-22s %9zu %8.3f %8.4f %8.2f %9.3f %6d %6s\n", name.c_str(), level.triangles.size(), cpu,
-                distance.mean_voxels, distance.max_voxels, 100 * (volume_of(level) - volume_) / volume_,
-                find_components(level).count, pairs.c_str());
-    std::fflush(stdout);
-  }
-
-  /// The whole chain; cpu is the chain's.
-  std::vector<std::size_t> add_levels(const std::string& name, const BuildLodsOptions& options) const {
+  /// A chain of levels by ratio; the CPU time is the whole chain's.
+  std::vector<std::size_t> add_levels(const std::string& name, const BuildLodsOptions& options) {
     NoProgress progress;
     const double start = cpu_seconds();
-    const auto lods = build_lods(m0_, options, progress);
+    const auto lods = build_lods(mesh_.m0, options, progress);
     const double cpu = cpu_seconds() - start;
+    if (!lods) {
+      std::printf("  %s: %s\n", name.c_str(), lods.error().message.c_str());
+      return {};
+    }
     std::vector<std::size_t> counts;
-    if (!lods) return counts;
-    for (const LodLevel& level : lods->levels) {
-      add(name, level.mesh, cpu, true);
+    for (std::size_t k = 0; k < lods->levels.size(); ++k) {
+      const LodLevel& level = lods->levels[k];
+      const Json row = {
+          {"by", name}, {"asked_ratio", *options.levels[k].ratio}, {"stopped_by", name_of(level.stopped_by)}};
+      add(row, against_.measure(level.mesh, level.origin, true), cpu);
       counts.push_back(level.mesh.triangles.size());
     }
     return counts;
   }
 
-  void add_peers([[maybe_unused]] const std::vector<std::size_t>& counts) const {
-#ifdef GEOSIS_HAVE_MESHOPTIMIZER
-    const auto* first = reinterpret_cast<const unsigned*>(m0_.triangles.data());
-    for (const std::size_t count : counts) {
-      const double start = cpu_seconds();
-      std::vector<unsigned> out(3 * m0_.triangles.size());
-      out.resize(meshopt_simplify(out.data(), first, out.size(), &m0_.positions[0].x, m0_.positions.size(),
-                                  sizeof(Vec3f), 3 * count, 1e9f, 0, nullptr));
-      IndexedMesh level{m0_.positions, {}};
-      for (std::size_t i = 0; i < out.size(); i += 3) {
-        level.triangles.push_back({static_cast<std::int32_t>(out[i]), static_cast<std::int32_t>(out[i + 1]),
-                                   static_cast<std::int32_t>(out[i + 2])});
-      }
-      add("meshoptimizer, alone", level, cpu_seconds() - start, true);
-    }
-#endif
-#ifdef GEOSIS_HAVE_CGAL
-    for (const std::size_t count : counts) {
-      const double start = cpu_seconds();
-      const double ratio = static_cast<double>(count) / static_cast<double>(m0_.triangles.size());
-      const IndexedMesh level = garland_heckbert(m0_, ratio);
-      add("CGAL Garland-Heckbert", level, cpu_seconds() - start, false);
-    }
-#endif
+  void add_peer(const Peer& peer, std::size_t triangles) {
+    const double start = cpu_seconds();
+    const IndexedMesh level = peer.simplify(mesh_.m0, triangles);
+    const double cpu = cpu_seconds() - start;
+    add({{"by", peer.name}, {"asked_triangles", triangles}}, against_.measure(level, {}, peer.on_lattice), cpu);
   }
 
+  const Json& json() const { return json_; }
+
  private:
-  const IndexedMesh& m0_;
-  ReferenceSurface reference_;
-  double volume_;
+  void add(Json row, const LevelMeasures& measures, double cpu) {
+    std::string name = row["by"];
+    if (row.contains("stopped_by") && row["stopped_by"] != "")
+      name += " (" + row["stopped_by"].get<std::string>() + ")";
+    print(name, measures, cpu);
+    row["cpu_seconds"] = cpu;
+    row.update(to_json(measures));
+    json_["levels"].push_back(row);
+  }
+
+  static void print(const std::string& name, const LevelMeasures& m, double cpu) {
+    const auto& [away, back] = m.distance;
+    std::string pairs = "-", rim = "-";
+    if (m.pairs) {
+      pairs = std::to_string(m.pairs->within_a_sheet) + "/" + std::to_string(m.pairs->between_sheets) + "/" +
+              std::to_string(m.pairs->between_components);
+    }
+    if (m.rim) {
+      char text[64];
+      std::snprintf(text, sizeof text, "%.3f %.2f %.2f", std::max(m.rim->away.mean, m.rim->back.mean),
+                    std::max(m.rim->away.p99, m.rim->back.p99), std::max(m.rim->away.max, m.rim->back.max));
+      rim = text;
+    }
+    std::printf("  %-24s %9lld %7.2f %7.4f %7.4f %6.3f %6.3f %6.2f %6.2f %8.3f %15s %17s  %s\n", name.c_str(),
+                static_cast<long long>(m.triangles), cpu, away.mean, back.mean, away.p99, back.p99, away.max, back.max,
+                100 * m.volume_drift, pairs.c_str(), rim.c_str(), m.topology.c_str());
+    std::fflush(stdout);
+  }
+
+  const BenchMesh& mesh_;
+  MeasuredAgainst against_;
+  Json json_;
 };
 
-void report(const char* name, const IndexedMesh& m0, bool peers) {
-  const Report report(name, m0);
-  const auto levels = by_ratio({std::begin(kRatios), std::end(kRatios)});
-  const auto counts = report.add_levels("greedy", {.levels = levels});
-  report.add_levels("multiple choice", {.levels = levels, .strategy = Strategy::multiple_choice});
-  report.add_levels("greedy, subset", {.levels = levels, .placement = Placement::subset});
-  if (peers) report.add_peers(counts);
+BuildLodsOptions options_for(const Arguments& arguments, Strategy strategy, Placement placement) {
+  BuildLodsOptions options{.levels = by_ratio(arguments.ratios), .strategy = strategy, .placement = placement};
+  if (arguments.default_caps) return options;
+  for (LevelTarget& level : options.levels) level.error_cap = std::numeric_limits<double>::infinity();
+  return options;
+}
+
+bool is_wanted(const Peer& peer, const Arguments& arguments) {
+  if (arguments.no_peers || arguments.peers.empty()) return !arguments.no_peers;
+  return std::ranges::any_of(arguments.peers,
+                             [&](const std::string& name) { return peer.name.find(name) != std::string::npos; });
+}
+
+Json report(const BenchMesh& mesh, const Arguments& arguments) {
+  Report report(mesh);
+  const auto counts = report.add_levels("greedy", options_for(arguments, Strategy::greedy, Placement::optimal));
+  if (arguments.variants) {
+    report.add_levels("multiple choice", options_for(arguments, Strategy::multiple_choice, Placement::optimal));
+    report.add_levels("greedy, subset", options_for(arguments, Strategy::greedy, Placement::subset));
+  }
+  for (const Peer& peer : peers()) {
+    for (std::size_t k = 0; k < counts.size() && is_wanted(peer, arguments); ++k) {
+      if (std::ranges::find(arguments.peer_ratios, arguments.ratios[k]) == arguments.peer_ratios.end()) continue;
+      report.add_peer(peer, counts[k]);
+    }
+  }
+  return report.json();
+}
+
+int run(const Arguments& arguments) {
+  const std::string processor = first_line_of("/proc/cpuinfo", "model name");
+  Json document = {{"commit", arguments.commit},
+                   {"machine", std::to_string(std::thread::hardware_concurrency()) + " x " +
+                                   processor.substr(std::min(processor.size(), processor.find(':') + 2))},
+                   {"load_at_start", first_line_of("/proc/loadavg", "")},
+                   {"compiler", "g++ " __VERSION__},
+                   {"error_caps", arguments.default_caps ? "default" : "none"},
+                   {"samples_each_way", 100'000},
+                   {"surfaces", Json::array()}};
+  for (const std::string& surface : arguments.surfaces) {
+    const auto mesh = make_bench_mesh(surface);
+    if (!mesh) {
+      std::fprintf(stderr, "%s: %s\n", surface.c_str(), mesh.error().message.c_str());
+      return 1;
+    }
+    document["surfaces"].push_back(report(*mesh, arguments));
+    if (!arguments.out.empty()) std::ofstream(arguments.out) << document.dump(1) << '\n';  // after each: they take long
+  }
+  return 0;
 }
 
 }  // namespace
 }  // namespace geosis
 
 int main(int argc, char** argv) {
-  using namespace geosis;
-  const int nodes = argc > 1 ? std::atoi(argv[1]) : 128;
-  const bool peers = argc <= 2 || std::atoi(argv[2]) != 0;
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  report("channel", survey_surface(SurveyKind::channel, nodes, {0.55f, kInfinity}), peers);
-  report("reflectors", survey_surface(SurveyKind::reflectors, nodes, {0.2f, kInfinity}), peers);
-  report("rough gyroid", rough_gyroid(nodes / 2), peers);
-  return 0;
+  geosis::Arguments arguments;
+  CLI::App app("What levels of detail are worth");
+  app.add_option("surfaces", arguments.surfaces, "kind:nodes:seed or a file, see bench_mesh.h")->required();
+  app.add_option("--ratios", arguments.ratios, "of the levels")->delimiter(',')->capture_default_str();
+  app.add_option("--peer-ratios", arguments.peer_ratios, "those at which peers are run")->delimiter(',');
+  app.add_option("--peers", arguments.peers, "only those whose names hold one of these")->delimiter(',');
+  app.add_flag("--no-peers", arguments.no_peers);
+  app.add_flag("--default-caps", arguments.default_caps, "the default error caps instead of none");
+  app.add_flag("--variants", arguments.variants, "multiple choice and subset as well");
+  app.add_option("--out", arguments.out, "JSON file");
+  app.add_option("--commit", arguments.commit, "for the JSON file");
+  CLI11_PARSE(app, argc, argv);
+  return geosis::run(arguments);
 }

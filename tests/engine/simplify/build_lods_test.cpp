@@ -96,10 +96,11 @@ TEST(BuildLods, ReachesTheAskedRatiosOnASphere) {
   for (const WindowSizes& sizes : {WindowSizes{}, kSmallWindows}) {
     const LodHierarchy hierarchy = lods(m0, {}, sizes);
     ASSERT_EQ(hierarchy.levels.size(), 5u);
+    double asked = static_cast<double>(m0.triangles.size());
     for (const LodLevel& level : hierarchy.levels) {
-      const double asked = level.asked_ratio * static_cast<double>(m0.triangles.size());
       EXPECT_NEAR(static_cast<double>(level.mesh.triangles.size()), asked, 0.005 * asked + 2);
       EXPECT_EQ(level.stopped_by, StoppedBy::none);
+      asked /= 4;
     }
     expect_sound_levels(m0, hierarchy);
   }
@@ -107,11 +108,35 @@ TEST(BuildLods, ReachesTheAskedRatiosOnASphere) {
 
 TEST(BuildLods, ReachesGentleRatiosInManyWindows) {
   const IndexedMesh m0 = sphere();
-  const LodHierarchy hierarchy = lods(m0, {.levels = by_ratio({0.95, 0.9, 0.6, 0.5})}, kSmallWindows);
-  for (const LodLevel& level : hierarchy.levels) {
-    const double asked = level.asked_ratio * static_cast<double>(m0.triangles.size());
-    EXPECT_NEAR(static_cast<double>(level.mesh.triangles.size()), asked, 0.005 * asked + 2);
+  const std::vector<double> ratios = {0.95, 0.9, 0.6, 0.5};
+  const LodHierarchy hierarchy = lods(m0, {.levels = by_ratio(ratios)}, kSmallWindows);
+  for (std::size_t k = 0; k < ratios.size(); ++k) {
+    const double asked = ratios[k] * static_cast<double>(m0.triangles.size());
+    EXPECT_NEAR(static_cast<double>(hierarchy.levels[k].mesh.triangles.size()), asked, 0.005 * asked + 2);
   }
+}
+
+TEST(BuildLods, LevelsThatAreTakenOneByOneAreTheSame) {
+  const IndexedMesh m0 = shell();
+  const BuildLodsOptions options{.levels = by_ratio({1, 0.5, 0.1})};
+  const LodHierarchy together = lods(m0, options);
+  std::size_t next = 0;
+  NoProgress progress;
+  const auto built = build_lods_one_by_one(m0, options, progress, [&](std::size_t k, const LodLevel& level) {
+    EXPECT_EQ(k, next++);
+    EXPECT_TRUE(same_bytes(k == 0 ? m0 : level.mesh, together.levels[k].mesh)) << k;
+    EXPECT_EQ(level.mesh.triangles.empty(), k == 0);
+  });
+  EXPECT_TRUE(built);
+  EXPECT_EQ(next, 3u);
+}
+
+TEST(BuildLods, LevelsThatShareVerticesComeAllAtOnce) {
+  NoProgress progress;
+  const auto built = build_lods_one_by_one(shell(), {.placement = Placement::subset}, progress,
+                                           [](std::size_t, const LodLevel&) { FAIL(); });
+  ASSERT_FALSE(built);
+  EXPECT_EQ(built.error().code, ErrorCode::unsupported);
 }
 
 TEST(BuildLods, LevelOfRatioOneIsTheInput) {

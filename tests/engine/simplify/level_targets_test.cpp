@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -58,12 +59,21 @@ double vertex_distance(const IndexedMesh& a, const IndexedMesh& b) {
   return farthest;
 }
 
+MeasureError to_nearest_vertex() {
+  return [](const IndexedMesh& from, const IndexedMesh& to) { return vertex_distance(to, from); };
+}
+
+/// Of levels whose vertices are all on M0.
+MeasureError to_nearest_vertex_of_level() {
+  return [](const IndexedMesh& from, const IndexedMesh& to) { return vertex_distance(from, to); };
+}
+
 TEST(LevelTargets, VolumeDriftsByLessThanHalfAPercent) {
   for (const IndexedMesh& m0 : {mesh_field({40, 40, 40}, ball({19.5, 19.4, 19.6}, 16)),
                                 mesh_field({40, 40, 18}, torus({19.5, 19.5, 8.5}, 12, 5))}) {
     const LodHierarchy hierarchy = lods(m0, {.levels = by_ratio({0.25, 0.0625})});
     for (const LodLevel& level : hierarchy.levels) {
-      EXPECT_NEAR(volume_of(level.mesh) / volume_of(m0), 1, 0.005) << level.asked_ratio;
+      EXPECT_NEAR(volume_of(level.mesh) / volume_of(m0), 1, 0.005) << level.mesh.triangles.size();
     }
   }
 }
@@ -73,8 +83,9 @@ TEST(LevelTargets, MultipleChoiceKeepsTopologyAndReachesItsRatios) {
   for (const WindowSizes& sizes : {WindowSizes{}, kSmallWindows}) {
     const LodHierarchy hierarchy =
         lods(m0, {.levels = by_ratio({0.25, 0.1}), .strategy = Strategy::multiple_choice, .seed = 7}, sizes);
+    double ratio = 0.25;
     for (const LodLevel& level : hierarchy.levels) {
-      const double asked = level.asked_ratio * static_cast<double>(m0.triangles.size());
+      const double asked = std::exchange(ratio, 0.1) * static_cast<double>(m0.triangles.size());
       EXPECT_NEAR(static_cast<double>(level.mesh.triangles.size()), asked, 0.01 * asked + 2);
       EXPECT_EQ(sorted_topology_of(level.mesh), sorted_topology_of(m0));
       EXPECT_EQ(fault_of_shape(level.mesh), "none");
@@ -91,20 +102,28 @@ TEST(LevelTargets, SeedDecidesWhatMultipleChoiceGives) {
   EXPECT_NE(with_seed(1).positions, with_seed(2).positions);
 }
 
+/// All levels are parts of m0's positions, and each the first of those of every larger one.
+void expect_one_vertex_array(const IndexedMesh& m0, const LodHierarchy& hierarchy) {
+  for (const LodLevel& level : hierarchy.levels) {
+    const std::vector<Vec3f>& own = level.mesh.positions;
+    for (const LodLevel& other : hierarchy.levels) {
+      if (other.mesh.positions.size() < own.size()) continue;
+      EXPECT_TRUE(std::equal(own.begin(), own.end(), other.mesh.positions.begin()));
+    }
+    for (std::size_t v = 0; v < own.size(); ++v) EXPECT_EQ(own[v], m0.positions[level.origin[v]]);
+    EXPECT_EQ(fault_of_shape(level.mesh), "none");
+  }
+}
+
 TEST(LevelTargets, SubsetLevelsShareOneVertexArray) {
   const IndexedMesh m0 = gyroid_mesh();
   for (const WindowSizes& sizes : {WindowSizes{}, kSmallWindows}) {
     const LodHierarchy hierarchy =
         lods(m0, {.levels = by_ratio({1, 0.25, 0.0625}), .placement = Placement::subset}, sizes);
-    const std::vector<Vec3f>& all = hierarchy.levels[0].mesh.positions;
-    for (const LodLevel& level : hierarchy.levels) {
-      const std::vector<Vec3f>& own = level.mesh.positions;
-      ASSERT_LE(own.size(), all.size());
-      EXPECT_TRUE(std::equal(own.begin(), own.end(), all.begin()));
-      for (std::size_t v = 0; v < own.size(); ++v) EXPECT_EQ(own[v], m0.positions[level.origin[v]]);
-      EXPECT_EQ(sorted_topology_of(level.mesh), sorted_topology_of(m0));
-      EXPECT_EQ(fault_of_shape(level.mesh), "none");
-    }
+    EXPECT_GT(hierarchy.levels[0].mesh.positions.size(), hierarchy.levels[1].mesh.positions.size());
+    EXPECT_GT(hierarchy.levels[1].mesh.positions.size(), hierarchy.levels[2].mesh.positions.size());
+    expect_one_vertex_array(m0, hierarchy);
+    for (const LodLevel& level : hierarchy.levels) EXPECT_EQ(sorted_topology_of(level.mesh), sorted_topology_of(m0));
   }
 }
 
@@ -153,11 +172,62 @@ TEST(LevelTargets, MaxErrorIsMeasuredAndKept) {
 
 TEST(LevelTargets, MaxErrorAfterACoarserLevelBeginsAnew) {
   const IndexedMesh m0 = mesh_field({30, 30, 30}, ball({14.5, 14.5, 14.5}, 12));
-  const MeasureError measure = [](const IndexedMesh& from, const IndexedMesh& to) { return vertex_distance(to, from); };
-  const LodHierarchy hierarchy =
-      lods(m0, {.levels = {{.ratio = 0.005, .error_cap = kInfinity}, {.max_error = 0.6}}, .measure = measure});
+  const LodHierarchy hierarchy = lods(
+      m0, {.levels = {{.ratio = 0.005, .error_cap = kInfinity}, {.max_error = 0.6}}, .measure = to_nearest_vertex()});
   EXPECT_LE(hierarchy.levels[1].error, 0.6);
   EXPECT_GT(hierarchy.levels[1].mesh.triangles.size(), hierarchy.levels[0].mesh.triangles.size());
+}
+
+TEST(LevelTargets, MaxErrorAfterACoarserLevelIsMadeBeforeItInASharedArray) {
+  const IndexedMesh m0 = mesh_field({30, 30, 30}, ball({14.5, 14.5, 14.5}, 12));
+  const LodHierarchy hierarchy = lods(m0, {.levels = {{.ratio = 1},
+                                                      {.ratio = 0.01, .error_cap = kInfinity},
+                                                      {.ratio = 0.005, .error_cap = kInfinity},
+                                                      {.max_error = 2},
+                                                      {.ratio = 0.004, .error_cap = kInfinity}},
+                                           .placement = Placement::subset,
+                                           .measure = to_nearest_vertex_of_level()});
+  ASSERT_EQ(hierarchy.levels.size(), 5u);
+  const auto triangles = [&](std::size_t k) { return static_cast<double>(hierarchy.levels[k].mesh.triangles.size()); };
+  EXPECT_LE(hierarchy.levels[3].error, 2);
+  EXPECT_GT(triangles(3), triangles(1));
+  EXPECT_LT(triangles(3), 0.9 * triangles(0));
+  EXPECT_NEAR(triangles(1), 0.01 * triangles(0), 3);
+  EXPECT_NEAR(triangles(2), 0.005 * triangles(0), 3);
+  EXPECT_NEAR(triangles(4), 0.004 * triangles(0), 3);
+  expect_one_vertex_array(m0, hierarchy);
+}
+
+TEST(LevelTargets, MaxErrorThatDroppedComponentsExceedKeepsTheRestInASharedArray) {
+  const IndexedMesh m0 = ball_among_specks();
+  const DropSpecks all_specks{.max_voxels = 2};
+  const LodHierarchy hierarchy =
+      lods(m0, {.levels = {{.max_error = 0.5, .drop = all_specks}, {.max_error = 0.6}, {.ratio = 0.1}},
+                .placement = Placement::subset,
+                .measure = to_nearest_vertex_of_level()});
+  EXPECT_EQ(find_components(hierarchy.levels[0].mesh).count, 1);
+  EXPECT_EQ(hierarchy.levels[0].mesh.triangles.size(), hierarchy.levels[1].mesh.triangles.size());
+  expect_one_vertex_array(m0, hierarchy);
+}
+
+TEST(LevelTargets, SharedArraysCannotKeepWhatAFinerLevelDrops) {
+  const IndexedMesh m0 = ball_among_specks();
+  NoProgress progress;
+  const auto built =
+      build_lods(m0,
+                 {.levels = {{.ratio = 0.005, .error_cap = kInfinity}, {.max_error = 0.01, .drop = {.max_voxels = 2}}},
+                  .placement = Placement::subset,
+                  .measure = to_nearest_vertex_of_level()},
+                 progress);
+  ASSERT_FALSE(built);
+  EXPECT_EQ(built.error().code, ErrorCode::unsupported);
+}
+
+TEST(LevelTargets, RatioOneAfterAnotherLevelIsThatLevel) {
+  const IndexedMesh m0 = gyroid_mesh();
+  const LodHierarchy hierarchy = lods(m0, {.levels = {{.max_cost = 0.01}, {.ratio = 1}}});
+  EXPECT_LT(hierarchy.levels[0].mesh.triangles.size(), m0.triangles.size());
+  EXPECT_EQ(hierarchy.levels[0].mesh.triangles, hierarchy.levels[1].mesh.triangles);
 }
 
 TEST(LevelTargets, SpecksGoByVolume) {

@@ -1,0 +1,55 @@
+#include "engine/pipeline/estimate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/isosurface/estimate_triangles.h"
+
+namespace geosis {
+namespace {
+
+// Measured, docs/estimates.md.
+constexpr double kFixedBytes = 4096;            // of a result, however small
+constexpr double kBytesPerTriangle = 1.6;       // encoded, of any level
+constexpr double kMoreBytesPerAttribute = 0.3;  // each: normals, bodies, reliability, value
+constexpr double kFixedMemory = 1 << 20;
+constexpr double kMemoryPerThread = 1 << 19;
+constexpr double kMemoryPerTriangle = 125;  // of M0
+constexpr double kFixedSeconds = 0.15;      // of one core
+constexpr double kSecondsPerTriangle = 2.2e-6;
+constexpr double kParallelShare = 0.85;
+
+/// Triangles of all levels together, for each of M0.
+double levels_per_triangle(const ReconstructOptions& options) {
+  double sum = 0;
+  for (const LevelTarget& level : options.levels) sum += level.ratio.value_or(1);
+  return sum;
+}
+
+double attributes(const ReconstructOptions& options, bool is_filled) {
+  return (options.normals ? 1 : 0) + (options.attributes.body ? 1 : 0) + (options.attributes.value ? 1 : 0) +
+         (options.attributes.reliability && is_filled ? 1 : 0);
+}
+
+}  // namespace
+
+ReconstructEstimate estimate_reconstruction(const BrickedVolume& samples, const ReconstructOptions& options) {
+  ExtractOptions extract;
+  extract.mode = options.mode;
+  extract.cap = options.cap;
+  extract.region = options.region.value_or(whole(samples.shape()));
+  const double triangles = estimate_triangles(samples, options.range, extract);
+  const bool is_filled = options.fill.method != FillMethod::none && has_missing(samples);
+  const double threads = std::max(options.threads, 1);
+  const double bytes_per_triangle = kBytesPerTriangle + kMoreBytesPerAttribute * attributes(options, is_filled);
+  const double one_core = kFixedSeconds + kSecondsPerTriangle * triangles;
+  return {
+      .triangles = static_cast<std::uint64_t>(triangles),
+      .bytes = static_cast<std::uint64_t>(kFixedBytes + bytes_per_triangle * levels_per_triangle(options) * triangles),
+      .memory_bytes =
+          static_cast<std::uint64_t>(kFixedMemory + kMemoryPerThread * threads + kMemoryPerTriangle * triangles),
+      .processor_seconds = one_core,
+      .seconds = one_core * (1 - kParallelShare + kParallelShare / threads)};
+}
+
+}  // namespace geosis

@@ -35,7 +35,29 @@ class Handover {
 #endif
 };
 
+thread_local LoopPriority current_priority = LoopPriority::normal;
+
+tbb::task_arena::priority arena_priority(LoopPriority priority) {
+  switch (priority) {
+    case LoopPriority::low:
+      return tbb::task_arena::priority::low;
+    case LoopPriority::normal:
+      return tbb::task_arena::priority::normal;
+    case LoopPriority::high:
+      return tbb::task_arena::priority::high;
+  }
+  return tbb::task_arena::priority::normal;
+}
+
 }  // namespace
+
+LoopPriorityScope::LoopPriorityScope(LoopPriority priority) : before_(current_priority) {
+  current_priority = priority;
+}
+
+LoopPriorityScope::~LoopPriorityScope() {
+  current_priority = before_;
+}
 
 int default_threads() {
   return tbb::info::default_concurrency();
@@ -49,7 +71,8 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
   // TBB gives no more threads than processors unless it is told to; more are asked for to test that results agree.
   const tbb::global_control allow(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(std::max(threads, default_threads())));
-  tbb::task_arena arena(threads);
+  const LoopPriority priority = current_priority;
+  tbb::task_arena arena(threads, 1, arena_priority(priority));
   Handover begin, end;
   begin.give();
   arena.execute([&] {
@@ -57,6 +80,7 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
         tbb::blocked_range<std::size_t>(0, count, 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
           begin.take();
+          const LoopPriorityScope nested(priority);
           for (std::size_t i = range.begin(); i != range.end(); ++i) task(i);
           end.give();
         },

@@ -68,7 +68,7 @@ bool Extractions::are_bodies_made(const std::string& id) {
 Result<std::shared_ptr<Job>> Extractions::begin_bodies(const std::string& id) {
   const auto extraction = find_done(id);
   if (!extraction) return extraction.error();
-  return begin(key(id, kBodies),
+  return begin((*extraction)->identity(), kBodies,
                [this, extraction = *extraction](Job& running) { return make_bodies(extraction->identity(), running); });
 }
 
@@ -173,7 +173,8 @@ Result<LevelFile> Extractions::whole_level(const std::string& id, int level, Lev
 Result<std::shared_ptr<Job>> Extractions::begin_level(const std::string& id, int level, LevelFormat format) {
   auto manifest = manifest_with_level(id, level);
   if (!manifest) return std::move(manifest).error();
-  return begin(key(id, level_file_name(level, format)),
+  const Extraction::Identity identity{id, manifest->at("volume").get<std::string>(), "", manifest->at("request")};
+  return begin(identity, level_file_name(level, format),
                [this, id, level, format, manifest = *std::move(manifest)](Job& running) {
                  return make_level_file(id, level, format, manifest, running);
                });
@@ -191,11 +192,14 @@ Result<void> Extractions::make_level_file(const std::string& id, int level, Leve
 }
 
 /// On a worker, as all that computes. Who asks for what is being made waits for the same job.
-Result<std::shared_ptr<Job>> Extractions::begin(const BlobKey& made, JobQueue::Work work) {
+Result<std::shared_ptr<Job>> Extractions::begin(const Extraction::Identity& identity, const std::string& name,
+                                                JobQueue::Work work) {
+  const BlobKey made = key(identity.id, name);
+  JobDemand demand = demand_of(identity, Priority::interactive);
   const std::lock_guard lock(mutex_);
   std::erase_if(making_, [](const auto& entry) { return entry.second.expired(); });
   if (const auto running = making_[made].lock(); running && !is_final(running->status().state)) return running;
-  auto job = queue_.submit(Priority::interactive, std::move(work));
+  auto job = queue_.submit(std::move(demand), std::move(work));
   if (job) making_[made] = *job;
   return job;
 }

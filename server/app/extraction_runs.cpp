@@ -64,7 +64,7 @@ Result<void> Extractions::submit(const std::shared_ptr<Extraction>& extraction, 
                                  Priority priority, std::shared_future<bool> recorded) {
   const auto unstarted =
       std::make_shared<Unstarted>([this, extraction, owner] { watch_.release(extraction, owner, stopping()); });
-  auto job = queue_.submit(priority, [=, this](Job& running) -> Result<void> {
+  auto job = queue_.submit(demand_of(extraction->identity(), priority), [=, this](Job& running) -> Result<void> {
     unstarted->set_started();
     if (!recorded.get()) return Error{ErrorCode::cancelled, "others compute it, or it could not be recorded"};
     return run(extraction, owner, running);
@@ -170,25 +170,26 @@ Result<std::shared_ptr<Extraction>> Extractions::create_transient(const ByteSour
   const auto unstarted = std::make_shared<Unstarted>([weak] {
     if (const auto held = weak.lock()) held->fail(stopping());
   });
-  auto job = queue_.submit(Priority::interactive, [=, this](Job& running) -> Result<void> {
-    unstarted->set_started();
-    const auto held = weak.lock();
-    if (!held) return Error{ErrorCode::cancelled, "nobody waits for it any more"};
-    const PartWriter write_part = [&](int level, int part, std::span<const std::byte> bytes) -> Result<void> {
-      shelf->put(level, part, bytes);
-      return {};
-    };
-    ExtractionProgress both(*held, running);
-    ExtractionTimings timings;
-    auto manifest = compute_extraction(*held, {.volume = summary, .samples = *volume->samples}, *options, reconstruct_,
-                                       write_part, both, timings);
-    if (!manifest) {
-      held->fail(manifest.error());
-      return std::move(manifest).error();
-    }
-    held->complete(*std::move(manifest), timings);
-    return {};
-  });
+  auto job = queue_.submit(
+      demand_of(*volume->samples, *options, Priority::interactive), [=, this](Job& running) -> Result<void> {
+        unstarted->set_started();
+        const auto held = weak.lock();
+        if (!held) return Error{ErrorCode::cancelled, "nobody waits for it any more"};
+        const PartWriter write_part = [&](int level, int part, std::span<const std::byte> bytes) -> Result<void> {
+          shelf->put(level, part, bytes);
+          return {};
+        };
+        ExtractionProgress both(*held, running);
+        ExtractionTimings timings;
+        auto manifest = compute_extraction(*held, {.volume = summary, .samples = *volume->samples}, *options,
+                                           reconstruct_, write_part, both, timings);
+        if (!manifest) {
+          held->fail(manifest.error());
+          return std::move(manifest).error();
+        }
+        held->complete(*std::move(manifest), timings);
+        return {};
+      });
   if (!job) return std::move(job).error();
   unstarted->set_queued();
   extraction->set_work(*std::move(job));

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "server/app/demand.h"
 #include "server/app/extraction_blobs.h"
 #include "server/app/extraction_identity.h"
 #include "server/app/volume_blobs.h"
@@ -67,16 +68,45 @@ std::shared_ptr<Extractions::Entry> Extractions::entry_of(const std::string& id)
 
 // ---- starting
 
-Result<std::shared_ptr<Extraction>> Extractions::create(const std::string& volume, const Json& request,
-                                                        Priority priority) {
-  const auto stored = volumes_.open(volume);
-  if (!stored) return stored.error();
+Result<Extractions::Wanted> Extractions::check(const std::string& volume, const Json& request) {
+  auto stored = volumes_.open(volume);
+  if (!stored) return std::move(stored).error();
   auto options = parse_request(request);
   if (!options) return std::move(options).error();
   const VolumeSummary& summary = (*stored)->summary;
   if (auto checked = check_request(*options, summary); !checked) return std::move(checked).error();
   if (auto other = open_attribute_volume(*options, summary); !other) return std::move(other).error();
-  Json canonical = request_document(*options, summary.shape);
+  options->threads = threads_;
+  return Wanted{*std::move(options), *std::move(stored)};
+}
+
+Result<Json> Extractions::estimate(const std::string& volume, const Json& request) {
+  const auto wanted = check(volume, request);
+  if (!wanted) return wanted.error();
+  return estimate_document(estimate_reconstruction(*wanted->volume->samples, wanted->options));
+}
+
+JobDemand Extractions::demand_of(const BrickedVolume& samples, const ReconstructOptions& options,
+                                 Priority priority) const {
+  return {.priority = priority,
+          .memory_bytes = memory_to_reserve(estimate_reconstruction(samples, options)),
+          .tenant = tenant_};
+}
+
+/// Of what cannot be opened only the priority is known: its job will fail at once.
+JobDemand Extractions::demand_of(const Extraction::Identity& identity, Priority priority) {
+  auto options = parse_request(identity.request);
+  const auto volume = volumes_.open(identity.volume);
+  if (!options || !volume) return {.priority = priority, .tenant = tenant_};
+  options->threads = threads_;
+  return demand_of(*(*volume)->samples, *options, priority);
+}
+
+Result<std::shared_ptr<Extraction>> Extractions::create(const std::string& volume, const Json& request,
+                                                        Priority priority) {
+  const auto wanted = check(volume, request);
+  if (!wanted) return wanted.error();
+  Json canonical = request_document(wanted->options, wanted->volume->summary.shape);
   const std::string id = extraction_id(volume, canonical, kResultVersion);
 
   const auto entry = entry_of(id);

@@ -56,8 +56,11 @@ class Extractions {
   /// Records the request durably and starts it, unless it is done or running; equal requests are computed once. A
   /// failed or cancelled one starts again. Adds one interest.
   ///
-  /// errors   not_found: the volume; invalid_argument, unsupported: the request; unavailable: the queue is full.
+  /// errors   not_found: the volume; invalid_argument, unsupported: the request; unavailable: the queue is full;
+  ///          quota_exceeded; limit_exceeded: it needs more memory than there is.
   Result<std::shared_ptr<Extraction>> create(const std::string& volume, const Json& request, Priority priority);
+  /// What create() would lead to, about, from the volume's index alone: estimate_document(). errors: as create().
+  Result<Json> estimate(const std::string& volume, const Json& request);
   /// The extraction, from memory or from the store. One that nobody computes any more is computed here; one that
   /// another server computes is followed.
   ///
@@ -123,6 +126,14 @@ class Extractions {
   /// recorded   the job goes on once this says true, and gives up when it says false.
   Result<void> submit(const std::shared_ptr<Extraction>& extraction, const std::string& owner, Priority priority,
                       std::shared_future<bool> recorded);
+  /// A request that makes sense for its volume, and the volume.
+  struct Wanted {
+    ReconstructOptions options;
+    std::shared_ptr<const StoredVolume> volume;
+  };
+  Result<Wanted> check(const std::string& volume, const Json& request);
+  JobDemand demand_of(const Extraction::Identity& identity, Priority priority);
+  JobDemand demand_of(const BrickedVolume& samples, const ReconstructOptions& options, Priority priority) const;
   void discard_result(const std::string& id) const;
   Result<void> remove_blobs(const std::string& id);
   Result<void> collect_garbage_of(const std::string& id);
@@ -150,7 +161,8 @@ class Extractions {
   Result<void> make_bodies(const Extraction::Identity& identity, Job& running);
   Result<void> make_level_file(const std::string& id, int level, LevelFormat format, const Json& manifest,
                                Job& running);
-  Result<std::shared_ptr<Job>> begin(const BlobKey& made, JobQueue::Work work);
+  Result<std::shared_ptr<Job>> begin(const Extraction::Identity& identity, const std::string& name,
+                                     JobQueue::Work work);
 
   BlobStore& store_;
   Volumes& volumes_;

@@ -1,6 +1,9 @@
 #include "server/http/received_file.h"
 
 #include <cerrno>
+#include <filesystem>
+#include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -29,6 +32,15 @@ Result<void> write_all(int descriptor, std::span<const std::byte> bytes) {
   return {};
 }
 
+/// Before the body is read: a file that cannot fit is not even begun.
+Result<void> check_space(const StagedFile& file, std::optional<std::uint64_t> bytes) {
+  std::error_code unknown;
+  const auto space = std::filesystem::space(file.path().parent_path(), unknown);
+  if (unknown || !bytes || *bytes <= space.available) return {};
+  return Error{ErrorCode::no_space, "the body has " + std::to_string(*bytes) + " bytes; the store's disk has " +
+                                        std::to_string(space.available) + " left"};
+}
+
 Result<void> copy_body(BodyReader& body, const FileSink& sink) {
   std::vector<std::byte> piece(kPiece);
   for (;;) {
@@ -48,6 +60,7 @@ Result<ReceivedFile> receive_file(const Request& request, BodyReader& wire, Blob
   auto staged = store.stage();
   if (!staged) return std::move(staged).error();
   ReceivedFile received{*std::move(staged), {}, {}};
+  if (auto fits = check_space(*received.file, request.content_length); !fits) return std::move(fits).error();
   const Descriptor descriptor(::open(received.file->path().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600));
   if (!descriptor.is_open()) return Error{ErrorCode::unavailable, "the store's staging cannot be written"};
   const FileSink sink = [&](std::span<const std::byte> bytes) { return write_all(descriptor.number(), bytes); };

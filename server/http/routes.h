@@ -8,9 +8,9 @@
 namespace geosis::server::http {
 
 /// /v1/volumes and below: upload, list, one, change, remove, histogram, slices.
-void add_volume_routes(Router& router, Services services);
+void add_volume_routes(Router& router, const ServicesOf& services);
 /// /v1/volumes/{id}/extractions, /v1/extractions and below, /v1/extract.
-void add_extraction_routes(Router& router, Services services);
+void add_extraction_routes(Router& router, const ServicesOf& services);
 /// /livez, /readyz, /version, /openapi.yaml, and the page.
 ///
 /// page   folder of the built page; where it is absent, / says so.

@@ -51,10 +51,16 @@ Reply accepted(const Extraction& extraction) {
 }
 
 Reply create(Services services, const Request& request) {
-  if (auto known = only_parameters(request, {}); !known) return error_reply(known.error());
+  if (auto known = only_parameters(request, {"dry_run"}); !known) return error_reply(known.error());
+  const auto is_dry = flag_parameter(request, "dry_run", false);
+  if (!is_dry) return error_reply(is_dry.error());
   if (!has_json_body(request)) return not_json();
   const auto wanted = parse_json(request.body);
   if (!wanted) return error_reply({ErrorCode::invalid_argument, "request body: " + wanted.error().message});
+  if (*is_dry) {
+    const auto estimate = services.extractions.estimate(request.captures[0], *wanted);
+    return estimate ? json_reply(200, *estimate) : error_reply(estimate.error());
+  }
   const auto extraction = services.extractions.create(request.captures[0], *wanted, priority_of(request));
   if (!extraction) return error_reply(extraction.error());
   if (accepts(request, kMultipart)) {
@@ -212,6 +218,8 @@ Reply extract(Services services, const Request& request, BodyReader& body) {
   if (!wanted) return error_reply(wanted.error());
   auto options = upload_options(request.query, {"range", "mode", "space", "cap", "missing"});
   if (!options) return error_reply(options.error());
+  const auto memory = memory_to_import(services);
+  if (!memory) return error_reply(memory.error());
   const auto received = receive_file(request, body, services.store);
   if (!received) return error_reply(received.error());
   if (auto added = add_form_options(received->fields, *options); !added) return error_reply(added.error());
@@ -226,13 +234,14 @@ Reply extract(Services services, const Request& request, BodyReader& body) {
 
 }  // namespace
 
-void add_extraction_routes(Router& router, Services services) {
+void add_extraction_routes(Router& router, const ServicesOf& services) {
   const auto with = [services](auto handler) {
-    return [=](const Request& request) { return handler(services, request); };
+    return [=](const Request& request) { return handler(services(request), request); };
   };
   router.post("/v1/volumes/([^/]+)/extractions", with(create));
-  router.upload("/v1/extract",
-                [services](const Request& request, BodyReader& body) { return extract(services, request, body); });
+  router.upload("/v1/extract", [services](const Request& request, BodyReader& body) {
+    return extract(services(request), request, body);
+  });
   router.get("/v1/extractions/([^/]+)", with(get));
   router.remove("/v1/extractions/([^/]+)", with(remove));
   router.get("/v1/extractions/([^/]+)/events", with(events));

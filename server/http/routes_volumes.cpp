@@ -24,6 +24,8 @@ Reply upload(Services services, const Request& request, BodyReader& body) {
   if (!options) return error_reply(options.error());
   options->name = parameter(request, "name").value_or("");
 
+  const auto memory = memory_to_import(services);
+  if (!memory) return error_reply(memory.error());
   auto received = receive_file(request, body, services.store);
   if (!received) return error_reply(received.error());
   if (auto added = add_form_options(received->fields, *options); !added) return error_reply(added.error());
@@ -156,12 +158,13 @@ Reply slice(Services services, const Request& request) {
 
 }  // namespace
 
-void add_volume_routes(Router& router, Services services) {
+void add_volume_routes(Router& router, const ServicesOf& services) {
   const auto with = [services](auto handler) {
-    return [=](const Request& request) { return handler(services, request); };
+    return [=](const Request& request) { return handler(services(request), request); };
   };
-  router.upload("/v1/volumes",
-                [services](const Request& request, BodyReader& body) { return upload(services, request, body); });
+  router.upload("/v1/volumes", [services](const Request& request, BodyReader& body) {
+    return upload(services(request), request, body);
+  });
   router.get("/v1/volumes", with(list));
   router.get("/v1/volumes/([^/]+)", with(get));
   router.patch("/v1/volumes/([^/]+)", with(change));

@@ -1,8 +1,13 @@
 #pragma once
 
+#include <functional>
+
+#include "engine/pipeline/estimate.h"
 #include "server/app/extractions.h"
 #include "server/app/volumes.h"
+#include "server/http/exchange.h"
 #include "server/jobs/job_queue.h"
+#include "server/jobs/memory_budget.h"
 #include "server/store/blob_store.h"
 
 namespace geosis::server::http {
@@ -13,6 +18,17 @@ struct Services {
   Volumes& volumes;
   Extractions& extractions;
   JobQueue& queue;
+  MemoryBudget& memory;
 };
+
+/// The services of the tenant that a request comes from.
+using ServicesOf = std::function<Services(const Request&)>;
+
+/// Memory for one import. errors: unavailable: others have taken it.
+inline Result<MemoryBudget::Reservation> memory_to_import(const Services& services) {
+  auto reserved = services.memory.reserve(kImportMemoryBytes);
+  if (!reserved) return Error{ErrorCode::unavailable, "the server's memory is taken by what runs already"};
+  return *std::move(reserved);
+}
 
 }  // namespace geosis::server::http

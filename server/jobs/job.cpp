@@ -94,6 +94,16 @@ void Job::report(const char* stage, double fraction) {
   });
 }
 
+void Job::limit_time(Clock::time_point deadline) {
+  for (auto known = deadline_.load(); deadline < known && !deadline_.compare_exchange_weak(known, deadline);) {
+  }
+}
+
+bool Job::is_late() const {
+  const auto deadline = deadline_.load(std::memory_order_relaxed);
+  return deadline != Clock::time_point::max() && Clock::now() >= deadline;
+}
+
 bool Job::cancelled() const {
   signs_of_life_.fetch_add(1, std::memory_order_relaxed);
   return cancel_requested_.load(std::memory_order_relaxed) || is_late();

@@ -37,14 +37,18 @@ class Job final : public Progress {
   using Clock = std::chrono::steady_clock;
 
   /// deadline   from then on cancelled() is true, and the job fails unless it is done.
-  explicit Job(std::optional<Clock::time_point> deadline = std::nullopt) : deadline_(deadline) {}
+  explicit Job(std::optional<Clock::time_point> deadline = std::nullopt) {
+    if (deadline) limit_time(*deadline);
+  }
 
   /// Rings at every new stage, else at most every 100 ms and only when 1 % was added.
   void report(const char* stage, double fraction) override;
   bool cancelled() const override;
   /// How often cancelled() was asked: a job whose number stands still makes no progress.
   std::uint64_t signs_of_life() const { return signs_of_life_.load(std::memory_order_relaxed); }
-  bool is_late() const { return deadline_ && Clock::now() >= *deadline_; }
+  /// Moves the deadline, if that is earlier than the one there is.
+  void limit_time(Clock::time_point deadline);
+  bool is_late() const;
   /// A queued job is cancelled at once; a running one learns of it by asking cancelled().
   void request_cancel();
 
@@ -86,7 +90,7 @@ class Job final : public Progress {
   void change(Apply apply);
   void ring_bells();
 
-  const std::optional<Clock::time_point> deadline_;
+  std::atomic<Clock::time_point> deadline_{Clock::time_point::max()};
   std::atomic<bool> cancel_requested_{false};
   mutable std::atomic<std::uint64_t> signs_of_life_{0};
   mutable std::mutex mutex_;  // guards all below

@@ -5,6 +5,8 @@
 #include <iterator>
 #include <utility>
 
+#include "engine/base/parallel.h"
+
 namespace geosis::server {
 namespace {
 
@@ -18,6 +20,18 @@ Result<void> call(const JobQueue::Work& work, Job& job) {
   } catch (...) {
     return Error{ErrorCode::internal, "a job ended with an exception of unknown type"};
   }
+}
+
+LoopPriority loop_priority(Priority priority) {
+  switch (priority) {
+    case Priority::preview:
+      return LoopPriority::high;
+    case Priority::interactive:
+      return LoopPriority::normal;
+    case Priority::batch:
+      return LoopPriority::low;
+  }
+  return LoopPriority::low;
 }
 
 }  // namespace
@@ -138,6 +152,7 @@ JobQueueReport JobQueue::report() {
 // ---- the workers
 
 void JobQueue::run(Item& item) {
+  const LoopPriorityScope loops(loop_priority(item.demand.priority));
   item.job->set_running();
   if (is_final(item.job->status().state)) {  // cancelled while it waited
     item.work = nullptr;
@@ -192,6 +207,7 @@ bool JobQueue::start_next(Lane lane, Item& item) {
     item = std::move(next->second);
     item.memory = *std::move(memory);
     waiting_.erase(next);
+    if (options_.longest.count() > 0) item.job->limit_time(now + options_.longest);
     running_[item.job] = {item.demand.priority, item.job->signs_of_life(), now};
     row(item.demand.priority).waited_seconds += std::chrono::duration<double>(now - item.submitted).count();
     return true;

@@ -34,12 +34,13 @@ struct JobDemand {
 };
 
 struct JobQueueOptions {
-  int workers = 1;                  ///< at least one is started
-  int preview_workers = 0;          ///< more, for previews alone: a preview never waits for something long
-  int most_batch = 0;               ///< batch jobs that may run at one time; 0 = as many as workers
-  std::size_t capacity = 64;        ///< jobs that may wait; running ones do not count
-  std::size_t tenant_capacity = 0;  ///< of these in the name of one tenant; 0 = all
-  MemoryBudget* budget = nullptr;   ///< what jobs reserve from; null = memory is not counted. Outlives the queue.
+  int workers = 1;                       ///< at least one is started
+  int preview_workers = 0;               ///< more, for previews alone: a preview never waits for something long
+  int most_batch = 0;                    ///< batch jobs that may run at one time; 0 = as many as workers
+  std::size_t capacity = 64;             ///< jobs that may wait; running ones do not count
+  std::size_t tenant_capacity = 0;       ///< of these in the name of one tenant; 0 = all
+  std::chrono::milliseconds longest{0};  ///< that a job may take from its start; 0 = any time
+  MemoryBudget* budget = nullptr;        ///< what jobs reserve from; null = memory is not counted. Outlives the queue.
   /// How long a job lets those of higher priority go first, by priority.
   std::array<std::chrono::milliseconds, kPriorities> patience = {std::chrono::seconds(0), std::chrono::seconds(5),
                                                                  std::chrono::seconds(60)};

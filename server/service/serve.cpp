@@ -15,6 +15,8 @@
 #include "server/http/front.h"
 #include "server/http/routes.h"
 #include "server/jobs/job_queue.h"
+#include "server/jobs/memory_budget.h"
+#include "server/jobs/memory_limit.h"
 #include "server/service/descriptor_limit.h"
 #include "server/store/dir_store.h"
 
@@ -24,6 +26,7 @@ namespace {
 constexpr const char* kTenant = "default";
 /// Handlers read the store and never wait for results: a few more than processors.
 constexpr std::size_t kHandlerThreads = 16;
+constexpr std::uint64_t kLeastMemory = std::uint64_t{128} << 20;
 constexpr std::chrono::seconds kLongestStop{3};  ///< after the time for finishing is over
 
 bool is_loopback(std::string_view listen) {
@@ -99,6 +102,24 @@ http::FrontOptions front_options(const ServeOptions& options) {
   return front;
 }
 
+/// What --memory says, or 70 % of what the control group and the machine allow.
+Result<std::uint64_t> memory_to_use(const ServeOptions& options) {
+  const std::uint64_t bytes = options.memory_bytes > 0 ? options.memory_bytes : memory_limit() / 10 * 7;
+  if (bytes >= kLeastMemory) return bytes;
+  return Error{ErrorCode::invalid_argument, "--memory " + std::to_string(bytes) + ": at least " +
+                                                std::to_string(kLeastMemory) + " bytes are needed"};
+}
+
+JobQueueOptions queue_options(const ServeOptions& options, MemoryBudget& memory) {
+  return {.workers = options.workers,
+          .preview_workers = 1,
+          .most_batch = std::max(options.workers - 1, 1),
+          .capacity = static_cast<std::size_t>(options.queued),
+          .tenant_capacity = static_cast<std::size_t>(options.queued_per_tenant),
+          .longest = options.longest,
+          .budget = &memory};
+}
+
 std::string host_of(const std::string& listen) {
   return listen.substr(0, listen.rfind(':'));
 }
@@ -110,14 +131,18 @@ Result<void> serve(const ServeOptions& options) {
   StopSignals signals;  // before the first thread starts, so that every thread inherits the mask
   const auto store = open_dir_store(options.store);
   if (!store) return store.error();
+  const auto memory_bytes = memory_to_use(options);
+  if (!memory_bytes) return memory_bytes.error();
+  MemoryBudget memory(*memory_bytes);
   Volumes volumes(**store, kTenant, options.threads);
-  JobQueue queue(options.workers, static_cast<std::size_t>(options.queued));
+  JobQueue queue(queue_options(options, memory));
   Extractions extractions(**store, volumes, queue, kTenant, options.threads);
 
   http::Router router;
-  const http::Services services{**store, volumes, extractions, queue};
-  http::add_volume_routes(router, services);
-  http::add_extraction_routes(router, services);
+  const http::Services services{**store, volumes, extractions, queue, memory};
+  const http::ServicesOf services_of = [services](const http::Request&) { return services; };
+  http::add_volume_routes(router, services_of);
+  http::add_extraction_routes(router, services_of);
   http::add_service_routes(router, services, options.page);
   auto front = http::Front::start(front_options(options), std::move(router));
   if (!front) return std::move(front).error();

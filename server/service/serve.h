@@ -23,9 +23,12 @@ struct ServeOptions {
   std::size_t connections_per_peer = 1024;  ///< of one address
   std::chrono::seconds patience{10};        ///< for a request's head, and over which minimum rates are judged
   std::chrono::seconds idle{60};            ///< between a connection's requests
+  std::uint64_t memory_bytes = 0;           ///< for what computes; 0 = 70 % of what this process may use
   int threads = 1;                          ///< that one extraction may use
   int workers = 2;                          ///< extractions at one time
   int queued = 64;                          ///< extractions that may wait for a worker
+  int queued_per_tenant = 48;               ///< of these in the name of one tenant
+  std::chrono::seconds longest{3600};       ///< that one extraction may take
   std::chrono::seconds drain{25};
 };
 

@@ -1,5 +1,6 @@
 #include "server/service/serve_command.h"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -12,8 +13,14 @@ namespace {
 struct ServeArguments {
   ServeOptions options;
   std::string store = "geosis-store", page = GEOSIS_PAGE_FOLDER;
+  int job_seconds = 3600;
   int drain_seconds = 25, patience_seconds = 10, idle_seconds = 60;
 };
+
+/// Of the processors for one extraction: three quarters, so that others go on beside it.
+int share_of_threads(int processors) {
+  return std::max((3 * processors + 3) / 4, 1);
+}
 
 }  // namespace
 
@@ -21,7 +28,7 @@ Command add_serve_command(CLI::App& app) {
   auto& command = *app.add_subcommand("serve", "Serve volumes and extractions over HTTP, and the page that shows them");
   auto arguments = std::make_shared<ServeArguments>();
   ServeOptions& options = arguments->options;
-  options.threads = default_threads();
+  options.threads = share_of_threads(default_threads());
   const auto flag = [&](const char* name, auto& value, const char* help) {
     return command.add_option(name, value, help)->capture_default_str();
   };
@@ -34,6 +41,12 @@ Command add_serve_command(CLI::App& app) {
   flag("--threads", options.threads, "threads that one extraction may use")->check(CLI::Range(1, 1024));
   flag("--workers", options.workers, "extractions at one time")->check(CLI::Range(1, 1024));
   flag("--queued", options.queued, "extractions that may wait; more are refused")->check(CLI::Range(1, 1'000'000));
+  flag("--queued-per-tenant", options.queued_per_tenant, "of these in the name of one tenant")
+      ->check(CLI::Range(1, 1'000'000));
+  flag("--job-seconds", arguments->job_seconds, "longest that one extraction may take")
+      ->check(CLI::Range(1, 1'000'000));
+  flag("--memory", options.memory_bytes, "that computing may take, by estimate; 0 = 70 % of what is there")
+      ->type_name("BYTES");
   flag("--max-body", options.max_body_bytes, "largest upload")->type_name("BYTES");
   flag("--connections", options.connections, "clients at one time")->check(CLI::Range(1, 1'000'000));
   flag("--peer-connections", options.connections_per_peer, "of them from one address; a proxy is one address")
@@ -52,6 +65,7 @@ Command add_serve_command(CLI::App& app) {
     arguments->options.page = arguments->page;
     arguments->options.patience = std::chrono::seconds(arguments->patience_seconds);
     arguments->options.idle = std::chrono::seconds(arguments->idle_seconds);
+    arguments->options.longest = std::chrono::seconds(arguments->job_seconds);
     arguments->options.drain = std::chrono::seconds(arguments->drain_seconds);
     return serve(arguments->options);
   };

@@ -6,6 +6,7 @@ GEOSIS = the built binary, GEOSIS_SHARED = folder of shared data (its surveys ar
 import base64
 import hashlib
 import json
+import math
 import os
 import shutil
 import struct
@@ -224,6 +225,21 @@ class Slices(Refusals):
 class Extractions(Refusals):
     def post(self, request, **headers):
         return CLIENT.send_json("POST", f"/v1/volumes/{VOLUME}/extractions", request, **headers)
+
+    def test_a_dry_run_estimates_and_records_nothing(self):
+        request = {"range": [0.31, None]}
+        target = f"/v1/volumes/{VOLUME}/extractions?dry_run=true"
+        answer = CLIENT.send_json("POST", target, request)
+        self.assertEqual(answer.status, 200)
+        estimate = answer.json()
+        self.assertNotIn("location", answer.headers)
+        self.assertLess(estimate["triangles"], estimate["bytes"])
+        made = self.post(request, Prefer="wait=60").json()
+        self.assertEqual(made["state"], "done")
+        triangles = sum(part["triangles"] for part in made["levels"][-1]["parts"])
+        self.assertLess(abs(math.log2(estimate["triangles"] / triangles)), 1)
+        self.assertEqual(CLIENT.send_json("POST", target, {"range": [2, 1]}).status, 400)
+        self.assertEqual(CLIENT.send_json("POST", target.replace("true", "maybe"), request).status, 400)
 
     def test_equal_requests_are_one_extraction(self):
         first = self.post({"range": [0.5, None]}, Prefer="wait=60")

@@ -207,6 +207,16 @@ TEST(JobOrder, AJobThatIsLateFails) {
   EXPECT_FALSE(has_run);
 }
 
+TEST(JobOrder, NoJobRunsLongerThanAnyMay) {
+  JobQueue queue({.capacity = 10, .longest = 30ms});
+  const auto job = *queue.submit(JobDemand{}, [](Job& self) -> Result<void> {
+    while (!self.cancelled()) std::this_thread::sleep_for(1ms);
+    return Error{ErrorCode::cancelled, "stopped"};
+  });
+  ASSERT_TRUE(job->wait_for(kLong));
+  EXPECT_EQ(job->status().error->code, ErrorCode::deadline_exceeded);
+}
+
 TEST(JobOrder, ReportsWhatWaitsRunsAndHasEnded) {
   Scene scene({.workers = 1, .capacity = 20});
   const auto held = scene.hold({Priority::interactive});

@@ -16,7 +16,7 @@ void Rings::build(std::size_t vertices, std::span<const LocalTriangle> triangles
     place = {end, 0, static_cast<std::uint16_t>(room)};
     end += room;
   }
-  triangles_.assign(end + kStep, {});
+  triangles_.assign(end + kPadding, {});
   for (auto& rooms : free_) rooms.clear();
   const auto add = [&](LocalVertex v, RingTriangle t) { triangles_[places_[v].first + places_[v].degree++] = t; };
   for (const auto& [a, b, c] : triangles) {
@@ -47,7 +47,7 @@ std::uint32_t Rings::allocate(std::uint32_t room) {
     rooms.pop_back();
     return first;
   }
-  const auto first = static_cast<std::uint32_t>(triangles_.size());
+  const auto first = static_cast<std::uint32_t>(triangles_.size()) - kPadding;
   triangles_.resize(triangles_.size() + room);
   return first;
 }

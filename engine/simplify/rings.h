@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cassert>
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <vector>
 
@@ -30,29 +28,12 @@ class Rings {
   /// Has v's ring fetched into the cache.
   void prefetch(LocalVertex v) const { __builtin_prefetch(&triangles_[places_[v].first]); }
 
-  /// Removes the triangle on u and v from w's ring; it must be there.
-  void remove_triangle(LocalVertex w, LocalVertex u, LocalVertex v) {
-    Place& place = places_[w];
-    RingTriangle* ring = &triangles_[place.first];
-    RingTriangle* found = ring;
-    while (!((found->a == u && found->b == v) || (found->a == v && found->b == u))) ++found;
-    assert(found < ring + place.degree);
-    *found = ring[--place.degree];
-  }
+  /// v's triangles, to be read and written eight at a time: whatever lies behind the last one is there.
+  RingTriangle* data(LocalVertex v) { return &triangles_[places_[v].first]; }
+  const RingTriangle* data(LocalVertex v) const { return &triangles_[places_[v].first]; }
 
-  /// Makes u out of every v in w's ring.
-  void rename(LocalVertex w, LocalVertex v, LocalVertex u) {
-    const Place place = places_[w];
-    RingTriangle* ring = &triangles_[place.first];
-    // Whole steps of one register: what lies in the room behind the last triangle is never read.
-    using Step = LocalVertex __attribute__((vector_size(kStep * sizeof(RingTriangle))));
-    for (std::uint32_t i = 0; i < place.degree; i += kStep) {
-      Step step;
-      std::memcpy(&step, ring + i, sizeof(step));
-      step = step == v ? Step{} + u : step;
-      std::memcpy(ring + i, &step, sizeof(step));
-    }
-  }
+  /// Forgets v's triangles from `degree` on.
+  void shorten(LocalVertex v, int degree) { places_[v].degree = static_cast<std::uint16_t>(degree); }
 
   /// Gives u the ring `merged` (which must not lie in this object) and leaves v without one.
   void merge(LocalVertex u, LocalVertex v, std::span<const RingTriangle> merged);
@@ -64,6 +45,7 @@ class Rings {
   };
   // Rooms come in multiples of 4 triangles: whole vector registers, and freed ones fit again.
   static constexpr std::uint32_t kStep = 4;
+  static constexpr std::uint32_t kPadding = 8;       // triangles behind all rooms
   static constexpr std::uint32_t kReusedRooms = 16;  // in steps; larger ones do not come back
 
   std::uint32_t allocate(std::uint32_t room);

@@ -4,13 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "engine/simplify/bucket_queue.h"
-#include "engine/simplify/collapse.h"
-#include "engine/simplify/random_edges.h"
-#include "engine/simplify/rings.h"
 #include "engine/simplify/rules.h"
 #include "engine/simplify/watch.h"
-#include "engine/simplify/working_mesh.h"
+#include "engine/simplify/window_state.h"
 
 namespace geosis {
 
@@ -38,10 +34,10 @@ class Window {
   /// Collapses edges until the goal is reached or no edge can collapse. False if cancelled.
   bool reduce(const Goal& goal, const Rules& rules, Watch& watch);
 
-  std::size_t vertices() const { return vertices_.size(); }  ///< loaded
-  std::int64_t triangles() const { return triangles_; }
-  float max_cost() const { return max_cost_; }  ///< of the collapses since load
-  bool capped() const { return capped_; }       ///< whether the last goal's max_cost or max_error refused a collapse
+  std::size_t vertices() const { return state_.vertices.size(); }  ///< loaded
+  std::int64_t triangles() const { return state_.triangles; }
+  float max_cost() const { return state_.max_cost; }  ///< of the collapses since load
+  bool capped() const { return state_.capped; }  ///< whether the last goal's max_cost or max_error refused a collapse
 
   struct Stored {
     std::size_t vertices = 0, triangles = 0;
@@ -55,34 +51,10 @@ class Window {
                std::span<std::int32_t> place) const;
 
   /// Gives the vertices' memory back for the next load.
-  std::vector<WorkingVertex> take_vertices() { return std::move(vertices_); }
+  std::vector<WorkingVertex> take_vertices() { return std::move(state_.vertices); }
 
  private:
-  void queue_all_edges();
-  void queue_edges_around(LocalVertex u);
-  void push(LocalVertex u, LocalVertex v, float cost);
-  bool reduce_greedily(Watch& watch);
-  bool collapse_cheapest_first(Watch& watch);
-  void prefetch(const QueuedEdge& edge) const;
-  bool reduce_by_multiple_choice(Watch& watch);
-  QueuedEdge cheapest_of_random(RandomEdges& random);
-  bool try_collapse(LocalVertex u, LocalVertex v);
-  bool within_goal(float cost, float weight);
-  void commit(LocalVertex u, LocalVertex v, const MergedStar& star);
-  Neighbours free_neighbours(LocalVertex u) const;
-
-  std::vector<WorkingVertex> vertices_;
-  std::vector<std::uint16_t> version_;  // raised when an edge cost at the vertex is out of date
-  Rings rings_;
-  BucketQueue queue_;
-  VertexMarks marks_;
-  Box bounds_;
-  Goal goal_;
-  Rules rules_;
-  bool queued_ = false;
-  std::int64_t triangles_ = 0;
-  float max_cost_ = 0;
-  bool capped_ = false;
+  WindowState state_;
 };
 
 }  // namespace geosis

@@ -1,11 +1,12 @@
-#include "engine/simplify/edge_cost.h"
+#include "engine/simplify/lanes/edge_cost.h"
 
-#include <array>
+#include <algorithm>
+#include <iterator>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-namespace geosis {
+namespace geosis::HWY_NAMESPACE {
 namespace {
 
 WorkingVertex vertex(Vec3f position, std::vector<Vec3f> normals) {
@@ -59,34 +60,44 @@ TEST(BestPoint, IsTheCheaperEndInASubset) {
       Vec3f({0, 0, 0}) - edge);
 }
 
-TEST(EdgeCosts, LanesGiveWhatOneEdgeGives) {
+std::vector<WorkingVertex> different_vertices() {
   std::vector<WorkingVertex> vertices;
   for (int i = 0; i < 12; ++i) {
     const auto x = static_cast<float>(i);
     vertices.push_back(vertex({x, x * x / 16, 3 - x}, {{1, x, 0.5f}, {x, -1, 2}}));
     vertices.back().on_boundary = i % 3 == 0;
   }
-  std::vector<LocalVertex> neighbours;
-  for (LocalVertex v = 1; v < 12; ++v) neighbours.push_back(v);
-  std::array<float, 16> together;
-  edge_costs(vertices, 0, neighbours, together);
-  for (std::size_t i = 0; i < neighbours.size(); ++i) {
-    std::array<float, kLanes> alone;
-    edge_costs(vertices, 0, std::span(neighbours).subspan(i, 1), alone);
-    EXPECT_EQ(together[i], alone[0]) << i;
+  return vertices;
+}
+
+TEST(EdgeCosts, LanesGiveWhatOneEdgeGives) {
+  const auto vertices = different_vertices();
+  const WorkingVertex *u[kLanes], *v[kLanes];
+  for (int i = 0; i < kLanes; ++i) u[i] = &vertices[i], v[i] = &vertices[(3 * i + 1) % 12];
+  for (const Placement placement : {Placement::optimal, Placement::subset}) {
+    float together[kLanes];
+    edge_costs(u, v, together, placement);
+    for (int i = 0; i < kLanes; ++i) {
+      const WorkingVertex* to[kLanes];
+      std::fill(std::begin(to), std::end(to), v[i]);
+      float alone[kLanes];
+      edge_costs(*u[i], to, alone, placement);
+      EXPECT_EQ(together[i], alone[0]) << i;
+    }
   }
 }
 
 TEST(EdgeCosts, FlatEdgesCostTheirLengthOnly) {
   const std::vector<WorkingVertex> vertices = {vertex({0, 0, 0}, {{0, 0, 1}}), vertex({1, 0, 0}, {{0, 0, 1}}),
                                                vertex({0, 3, 0}, {{0, 0, 1}}), vertex({0, 1, 1}, {{0, 0, 1}})};
-  const LocalVertex neighbours[] = {1, 2, 3};
-  std::array<float, kLanes> costs;
-  edge_costs(vertices, 0, neighbours, costs);
+  const WorkingVertex* to[kLanes];
+  for (int i = 0; i < kLanes; ++i) to[i] = &vertices[std::min(i + 1, 3)];
+  float costs[kLanes];
+  edge_costs(vertices[0], to, costs);
   EXPECT_LT(costs[0], costs[1]);
   EXPECT_LT(costs[1], 0.01f);
   EXPECT_GT(costs[2], 0.1f);
 }
 
 }  // namespace
-}  // namespace geosis
+}  // namespace geosis::HWY_NAMESPACE

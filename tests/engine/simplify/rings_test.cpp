@@ -35,18 +35,6 @@ TEST(Rings, ListEachVertexsTriangles) {
   EXPECT_EQ(ring_of(rings, 2), (Pairs{{0, 1}, {3, 0}}));
 }
 
-TEST(Rings, RemoveTheTriangleOnTwoVertices) {
-  Rings rings = square();
-  rings.remove_triangle(2, 3, 0);
-  EXPECT_EQ(ring_of(rings, 2), (Pairs{{0, 1}}));
-}
-
-TEST(Rings, RenameEveryOccurrence) {
-  Rings rings = square();
-  rings.rename(0, 2, 9);
-  EXPECT_EQ(ring_of(rings, 0), (Pairs{{1, 9}, {9, 3}}));
-}
-
 TEST(Rings, MergedRingTakesAnyRoom) {
   for (int size = 1; size <= 24; ++size) {
     Rings rings = square();

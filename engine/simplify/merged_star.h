@@ -49,7 +49,7 @@ inline Neighbours neighbours_of(LocalVertex v, bool on_boundary, const Rings& ri
 
 /// The star of the vertex that u and v would merge into.
 struct MergedStar {
-  /// First u's triangles, then v's, last those on both, which go.
+  /// First u's triangles, then v's; without those on both, which go.
   std::array<RingTriangle, 2 * kMaxDegree> ring;
   int degree = 0;                       ///< how many stay
   int from_u = 0;                       ///< how many of those are u's
@@ -88,38 +88,15 @@ class VertexMarks {
 bool find_merged_star(LocalVertex u, LocalVertex v, std::span<const WorkingVertex> vertices, const Rings& rings,
                       VertexMarks& marks, MergedStar& star);
 
-/// The triangles of a merged star as they are, four side by side.
-struct StarShape {
-  static constexpr int kGroups = (kMaxMergedDegree + 2 + kLanes - 1) / kLanes;
-  struct Row {
-    Float4 x, y, z;
-    void operator=(Vec3<Float4> v) { x = v.x, y = v.y, z = v.z; }
-    operator Vec3<Float4>() const { return {x, y, z}; }
-  };
-  std::array<Row, kGroups> a, side;  ///< of triangle (v, a, b): a, and b - a
-  std::array<Row, kGroups> normal;   ///< twice the triangle's area long
-  Vec3f all_normals;                 ///< sum over all triangles at u or v
-  Vec3f normals_of_v;                ///< sum over those at v and not at u
-};
-
-void measure_star(const MergedStar& star, LocalVertex u, LocalVertex v, std::span<const WorkingVertex> vertices,
-                  StarShape& shape);
-
-/// The place nearest to `place` for which the volume behind the merged star stays what it was; `place` itself if that
-/// one is too far off. Both relative to u; `edge` from u to v.
-/// source   Lindstrom & Turk 1998, volume preservation.
-Vec3f keep_volume(const StarShape& shape, Vec3f edge, Vec3f place);
-
-/// What is left of the star's triangles once their vertex has moved.
-struct MovedStar {
-  bool sound = false;  ///< no triangle turned over or collapsed
-  bool sharp = false;  ///< the triangles do not all look one way: they may fold over each other
-  Quadric planes;      ///< of the moved triangles, in the frame of their common vertex
-};
-
-MovedStar move_star(const MergedStar& star, const StarShape& shape, Vec3f position);
-
 /// The lattice point next to p that lies in the box (whose corners are lattice points).
-Vec3f snap_to_lattice(Vec3f p, const Box& bounds);
+inline Vec3f snap_to_lattice(Vec3f p, const Box& bounds) {
+  const auto snap = [](float x, float low, float high) {
+    constexpr float kSteps = static_cast<float>(kLatticeStepsPerVoxel);
+    x = std::min(std::max(x, low), high);
+    return static_cast<float>(static_cast<std::int32_t>(x * kSteps + (x < 0 ? -0.5f : 0.5f))) * kLatticeStep;
+  };
+  return {snap(p.x, bounds.low.x, bounds.high.x), snap(p.y, bounds.low.y, bounds.high.y),
+          snap(p.z, bounds.low.z, bounds.high.z)};
+}
 
 }  // namespace geosis

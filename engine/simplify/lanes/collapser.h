@@ -27,7 +27,7 @@ namespace HWY_NAMESPACE {
 inline constexpr float kFreshShare = 0.5f;
 
 /// After a collapse only edges up to this multiple of the cheapest one around are worth queueing.
-inline constexpr float kQueueLimit = 2.0f;
+inline constexpr float kQueueLimit = 1.5f;
 
 inline constexpr int kChoices = 8;          // edges to choose from: the paper's Table 1
 inline constexpr int kMostRefusals = 1000;  // in a row; what is left then will hardly collapse

@@ -26,7 +26,7 @@
 namespace geosis {
 
 /// Raised only when output bytes change; part of every extraction id.
-inline constexpr int kResultVersion = 2;
+inline constexpr int kResultVersion = 3;
 
 /// Which values the vertices of every level carry. Reliability is left out where every sample was measured.
 struct AttributeChoice {

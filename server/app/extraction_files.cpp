@@ -119,6 +119,11 @@ std::string extension_of(LevelFormat format) {
   return "";
 }
 
+bool Extractions::has_result(const std::string& id) const {
+  const auto is_done = store_.exists(key(id, kManifest));
+  return is_done && *is_done;
+}
+
 bool Extractions::is_level_made(const std::string& id, int level, LevelFormat format) {
   const auto made = store_.exists(key(id, level_file_name(level, format) + ".json"));
   if (made && *made) return true;

@@ -82,6 +82,8 @@ class Extractions {
   /// Removes what is left of results and fills whose volume or request is gone.
   Result<void> collect_garbage();
 
+  /// Whether the store has its manifest just now: what was read of it before is still true. Quick.
+  bool has_result(const std::string& id) const;
   /// False when level() would have to make the file first.
   bool is_level_made(const std::string& id, int level, LevelFormat format);
   /// Begins to make it; equal calls share one job. errors: not_found; already_exists: it is not done; unavailable.

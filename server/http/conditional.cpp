@@ -7,6 +7,7 @@
 
 #include "server/http/error_reply.h"
 #include "server/http/head_parser.h"
+#include "server/http/reply_head.h"
 
 namespace geosis::server::http {
 namespace {
@@ -98,7 +99,10 @@ void keep_range(Reply& reply, const ByteRange& range, std::uint64_t length) {
   reply.headers.emplace_back("Content-Range", "bytes " + std::to_string(range.first) + "-" +
                                                   std::to_string(range.last) + "/" + std::to_string(length));
   if (!reply.stream) {
-    reply.body = reply.body.substr(static_cast<std::size_t>(range.first), static_cast<std::size_t>(count));
+    const std::string& whole = reply.shared ? *reply.shared : reply.body;
+    std::string kept = whole.substr(static_cast<std::size_t>(range.first), static_cast<std::size_t>(count));
+    reply.body = std::move(kept);
+    reply.shared.reset();
     return;
   }
   reply.stream = std::make_unique<TailStream>(std::move(reply.stream), range.first);
@@ -120,11 +124,12 @@ void apply_conditions(const Request& request, Reply& reply) {
   if (tag && known && names(*known, *tag)) {
     reply.status = 304;
     reply.body.clear();
+    reply.shared.reset();
     reply.stream.reset();
     return;
   }
   if (reply.stream && !reply.length) return;
-  const std::uint64_t length = reply.stream ? *reply.length : reply.body.size();
+  const std::uint64_t length = body_length(reply);
   const bool is_ranged = may_be_ranged(request, tag);
   reply.headers.emplace_back("Accept-Ranges", "bytes");
   const std::string* text = request.header("range");

@@ -102,7 +102,13 @@ void Connection::receive() {
 }
 
 void Connection::advance() {
-  if (state_ == State::reading_head) read_head();
+  is_advancing_ = true;
+  for (bool is_next = true; is_next && state_ == State::reading_head;) {
+    const std::size_t before = in_.size();
+    read_head();
+    is_next = in_.size() < before && !in_.empty();  // answered at once: the next one's turn
+  }
+  is_advancing_ = false;
   if (state_ == State::reading_body) read_body();
   if (state_ == State::starting_upload) read_upload_start();
 }
@@ -125,10 +131,19 @@ void Connection::read_head() {
 
 void Connection::begin_request(Head head) {
   closes_ = !head.keeps_alive || owner_.is_draining();
-  if (!head.has_body() && head.method != "POST") return expect(owner_.handle(*this, std::move(head)));
   resolved_ = owner_.dispatcher().resolve(head);
+  if (!head.has_body() && head.method != "POST") return begin_without_body();
   if (owner_.dispatcher().is_upload(*resolved_)) return begin_upload(std::move(head));
   begin_small_body(head);
+}
+
+void Connection::begin_without_body() {
+  if (auto reply = owner_.dispatcher().run_quickly(*resolved_)) {
+    const ReplyForm form{.is_head = resolved_->request.method == "HEAD", .closes = closes_};
+    resolved_.reset();
+    return answer(std::make_unique<ReplyWriter>(*std::move(reply), form));
+  }
+  expect(owner_.handle(*this, *std::exchange(resolved_, std::nullopt)));
 }
 
 void Connection::begin_small_body(const Head& head) {

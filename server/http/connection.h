@@ -29,9 +29,7 @@ class ConnectionOwner {
   virtual const Dispatcher& dispatcher() const = 0;
   /// No further request is taken on any connection.
   virtual bool is_draining() const = 0;
-  /// Finds the handler and runs it elsewhere; the answer comes by answer(). False = too much to do already.
-  virtual bool handle(Connection& connection, Head head) = 0;
-  /// The same with the handler found, its body complete.
+  /// Runs the handler elsewhere; the answer comes by answer(). False = too much to do already.
   virtual bool handle(Connection& connection, Router::Resolved resolved) = 0;
   /// Whether upload() would find a thread just now.
   virtual bool takes_uploads() const = 0;
@@ -95,6 +93,7 @@ class Connection {
   void advance();
   void read_head();
   void begin_request(Head head);
+  void begin_without_body();
   void begin_small_body(const Head& head);
   void begin_upload(Head head);
   void read_upload_start();
@@ -126,6 +125,7 @@ class Connection {
   std::string in_;            ///< received, not yet used
   std::size_t searched_ = 0;  ///< bytes of in_ that hold no end of a head
   bool closes_ = false;
+  bool is_advancing_ = false;
   bool is_half_closed_ = false;               ///< the peer sends no more
   std::optional<Router::Resolved> resolved_;  ///< of a request whose body is being read
   std::optional<BodyCollector> body_;

@@ -75,7 +75,7 @@ void Connection::next_request() {
   state_ = State::reading_head;
   idle_since_ = Clock::now();
   deadline_ = idle_since_ + (in_.empty() ? limits.idle_timeout : limits.head_deadline);
-  if (!in_.empty()) advance();
+  if (!in_.empty() && !is_advancing_) advance();
 }
 
 void Connection::linger() {

@@ -75,6 +75,17 @@ bool Dispatcher::is_upload(const Router::Resolved& resolved) const {
   return std::holds_alternative<const UploadHandler*>(resolved.target);
 }
 
+std::optional<Reply> Dispatcher::run_quickly(const Router::Resolved& resolved) const {
+  if (!resolved.quick || !std::holds_alternative<const Handler*>(resolved.target)) return std::nullopt;
+  try {
+    auto reply = (*resolved.quick)(resolved.request);
+    if (!reply) return std::nullopt;
+    return finish(resolved.request, *std::move(reply));
+  } catch (...) {  // the handler will say what is wrong
+    return std::nullopt;
+  }
+}
+
 Reply Dispatcher::run(const Router::Resolved& resolved) const {
   const auto* handler = std::get_if<const Handler*>(&resolved.target);
   if (!handler) return finish(resolved.request, answer_without_handler(resolved));

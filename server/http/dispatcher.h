@@ -23,6 +23,8 @@ class Dispatcher {
   Router::Resolved resolve(const Head& head, Clock::time_point received = Clock::now()) const;
   bool is_upload(const Router::Resolved& resolved) const;
 
+  /// The answer, if there is one that takes no time.
+  std::optional<Reply> run_quickly(const Router::Resolved& resolved) const;
   /// What is pending is not finished yet: resume() does that.
   Reply run(const Router::Resolved& resolved) const;
   Reply run_upload(const Router::Resolved& resolved, BodyReader& body) const;

@@ -69,13 +69,17 @@ struct Reply {
   int status = 200;
   std::vector<std::pair<std::string, std::string>> headers;  ///< without Content-Length and Connection
   std::string body;
-  std::unique_ptr<ByteStream> stream;     ///< instead of the body
-  std::optional<std::uint64_t> length;    ///< of the stream; unset = chunked
-  std::unique_ptr<PendingReply> pending;  ///< instead of all else
+  std::shared_ptr<const std::string> shared;  ///< instead of the body: bytes that others hold as well
+  std::unique_ptr<ByteStream> stream;         ///< instead of the body
+  std::optional<std::uint64_t> length;        ///< of the stream; unset = chunked
+  std::unique_ptr<PendingReply> pending;      ///< instead of all else
   /// Told the bytes on the wire when the answer is written (complete) or given up. Must not throw.
   std::function<void(std::uint64_t bytes, bool is_complete)> on_written = {};
 };
 
+/// An answer found without looking anywhere but in memory: the loop's own thread asks for it. Nothing = a handler does
+/// it.
+using QuickHandler = std::function<std::optional<Reply>(const Request&)>;
 using Handler = std::function<Reply(const Request&)>;
 using UploadHandler = std::function<Reply(const Request&, BodyReader&)>;
 

@@ -207,21 +207,8 @@ Letter FrontLoop::letter_with_answer(std::uint64_t connection, const Request& re
   return letter;
 }
 
-bool FrontLoop::handle(Connection& connection, Head head) {
-  const ReplyForm form{.is_head = head.method == "HEAD", .closes = connection.closes()};
-  return handlers_.submit(
-      [this, id = connection.id(), form, head = std::move(head), received = Dispatcher::Clock::now()] {
-        Router::Resolved resolved;
-        const auto run = [&] {
-          resolved = dispatcher_.resolve(head, received);
-          return dispatcher_.run(resolved);
-        };
-        mailbox_->post(letter_with_answer(id, resolved.request, form, run));
-      });
-}
-
 bool FrontLoop::handle(Connection& connection, Router::Resolved resolved) {
-  const ReplyForm form{.is_head = false, .closes = connection.closes()};
+  const ReplyForm form{.is_head = resolved.request.method == "HEAD", .closes = connection.closes()};
   return handlers_.submit([this, id = connection.id(), form, resolved = std::move(resolved)] {
     mailbox_->post(letter_with_answer(id, resolved.request, form, [&] { return dispatcher_.run(resolved); }));
   });

@@ -38,7 +38,6 @@ class FrontLoop final : private ConnectionOwner {
   const Limits& limits() const override { return limits_; }
   const Dispatcher& dispatcher() const override { return dispatcher_; }
   bool is_draining() const override { return is_draining_; }
-  bool handle(Connection& connection, Head head) override;
   bool handle(Connection& connection, Router::Resolved resolved) override;
   bool takes_uploads() const override { return uploads_.has_room(); }
   bool upload(Connection& connection, Head head, Router::Resolved resolved, std::string already) override;

@@ -82,6 +82,11 @@ bool is_bodiless(int status) {
   return status == 204 || status == 304;
 }
 
+std::uint64_t body_length(const Reply& reply) {
+  if (reply.stream) return reply.length.value_or(0);
+  return reply.shared ? reply.shared->size() : reply.body.size();
+}
+
 std::string reply_head(const Reply& reply, const ReplyForm& form) {
   std::string head = "HTTP/1.1 " + std::to_string(reply.status) + " " + status_phrase(reply.status) + "\r\n";
   const auto add = [&head](std::string_view name, std::string_view value) {
@@ -93,7 +98,7 @@ std::string reply_head(const Reply& reply, const ReplyForm& form) {
     if (reply.stream && !reply.length) {
       add("Transfer-Encoding", "chunked");
     } else {
-      add("Content-Length", std::to_string(reply.stream ? *reply.length : reply.body.size()));
+      add("Content-Length", std::to_string(body_length(reply)));
     }
   }
   if (form.closes) add("Connection", "close");

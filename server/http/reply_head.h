@@ -18,6 +18,9 @@ bool is_writable(const Reply& reply);
 /// No body follows the head, whatever the reply holds.
 bool is_bodiless(int status);
 
+/// Bytes of the body, where they are known.
+std::uint64_t body_length(const Reply& reply);
+
 /// Status line, the reply's headers, Date, framing, Connection and the empty line.
 std::string reply_head(const Reply& reply, const ReplyForm& form);
 

@@ -34,7 +34,8 @@ ReplyWriter::ReplyWriter(Reply reply, const ReplyForm& form, BodyBudget::Share s
   left_ = reply.length;
   if (stream_) return;
   body_ = std::move(reply.body);
-  pending_[1] = body_;
+  shared_ = std::move(reply.shared);
+  pending_[1] = shared_ ? *shared_ : body_;
 }
 
 ReplyWriter::~ReplyWriter() {

@@ -56,6 +56,7 @@ class ReplyWriter {
 
   BodyBudget::Share share_;
   std::string head_, body_;
+  std::shared_ptr<const std::string> shared_;
   std::unique_ptr<ByteStream> stream_;
   std::optional<std::uint64_t> left_;  ///< of a stream of known length; unset = chunked
   std::unique_ptr<char[]> buffer_;     ///< room for a chunk's size, 64 KiB, line ends and the last chunk

@@ -32,6 +32,11 @@ std::string route_of(const std::string& pattern) {
 Router& Router::get(const std::string& pattern, Handler handler) {
   return add("GET", pattern, std::move(handler));
 }
+Router& Router::get(const std::string& pattern, Handler handler, QuickHandler quick) {
+  get(pattern, std::move(handler));
+  resource_of(pattern).quick = std::move(quick);
+  return *this;
+}
 Router& Router::post(const std::string& pattern, Handler handler) {
   return add("POST", pattern, std::move(handler));
 }
@@ -46,18 +51,22 @@ Router& Router::upload(const std::string& pattern, UploadHandler handler) {
 }
 
 Router& Router::add(const std::string& method, const std::string& pattern, AnyHandler handler) {
-  auto resource = std::find_if(resources_.begin(), resources_.end(),
-                               [&](const Resource& candidate) { return candidate.pattern == pattern; });
-  if (resource == resources_.end()) {
-    resource = resources_.insert(resource, Resource{pattern, route_of(pattern), {}});
-    matcher_.add(pattern);
-  }
-  resource->handlers.insert_or_assign(method, std::move(handler));
+  resource_of(pattern).handlers.insert_or_assign(method, std::move(handler));
   return *this;
 }
 
+Router::Resource& Router::resource_of(const std::string& pattern) {
+  auto resource = std::find_if(resources_.begin(), resources_.end(),
+                               [&](const Resource& candidate) { return candidate.pattern == pattern; });
+  if (resource == resources_.end()) {
+    resource = resources_.insert(resource, Resource{pattern, route_of(pattern), {}, {}});
+    matcher_.add(pattern);
+  }
+  return *resource;
+}
+
 Router::Resolved Router::resolve(const Head& head) const {
-  Resolved resolved{request_of(head), Refusal{404, "there is nothing at this path"}, {}};
+  Resolved resolved{request_of(head), Refusal{404, "there is nothing at this path"}, nullptr, {}};
   if (head.target == "*") {
     resolved.allowed = "GET, HEAD, POST, PATCH, DELETE, OPTIONS";
     resolved.target = NoHandler{};
@@ -82,6 +91,7 @@ void Router::find_handler(const Resource& resource, Resolved& resolved) const {
   const std::string& method = resolved.request.method;
   const auto found = resource.handlers.find(method == "HEAD" ? "GET" : method);
   if (found == resource.handlers.end()) return;
+  if (found->first == "GET" && resource.quick) resolved.quick = &resource.quick;
   std::visit([&](const auto& handler) { resolved.target = &handler; }, found->second);
 }
 

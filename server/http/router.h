@@ -17,12 +17,14 @@ namespace geosis::server::http {
 ///     routes.get("/v1/volumes/([^/]+)", [&](const Request& request) { return show(request.captures[0]); })
 ///           .upload("/v1/volumes", [&](const Request& request, BodyReader& body) { return store(body); });
 ///
-/// A pattern is a regular expression for the whole decoded path; the first one added that matches decides, so one
-/// text must stand for one resource in all its methods. GET handlers answer HEAD too. Built once, then read by any
+/// Patterns are TargetMatcher's; the first one added that matches decides, so one text must stand for one resource in
+/// all its methods. GET handlers answer HEAD too. Built once, then read by any
 /// number of threads.
 class Router {
  public:
   Router& get(const std::string& pattern, Handler handler);
+  /// quick   asked first.
+  Router& get(const std::string& pattern, Handler handler, QuickHandler quick);
   Router& post(const std::string& pattern, Handler handler);
   Router& patch(const std::string& pattern, Handler handler);
   Router& remove(const std::string& pattern, Handler handler);  ///< DELETE
@@ -34,6 +36,7 @@ class Router {
   struct Resolved {
     Request request;
     std::variant<NoHandler, Refusal, const Handler*, const UploadHandler*> target;
+    const QuickHandler* quick = nullptr;
     std::string allowed;  ///< the path's methods, comma separated; empty = there is no such path
   };
   /// The request without its body, and who answers it.
@@ -44,10 +47,12 @@ class Router {
   struct Resource {
     std::string pattern, route;
     std::map<std::string, AnyHandler> handlers;  ///< by method
+    QuickHandler quick;                          ///< of GET
 
     std::string allowed() const;
   };
 
+  Resource& resource_of(const std::string& pattern);
   Router& add(const std::string& method, const std::string& pattern, AnyHandler handler);
   void find_handler(const Resource& resource, Resolved& resolved) const;
 

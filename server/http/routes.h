@@ -11,6 +11,8 @@ namespace geosis::server::http {
 void add_volume_routes(Router& router, const ServicesOf& services);
 /// /v1/volumes/{id}/extractions, /v1/extractions and below, /v1/extract.
 void add_extraction_routes(Router& router, const ServicesOf& services);
+/// /v1/extractions/{id}/manifest, bodies, lods and below.
+void add_result_routes(Router& router, const ServicesOf& services);
 /// /livez, /readyz, /version, /openapi.yaml, and the page.
 ///
 /// page   folder of the built page; where it is absent, / says so.

@@ -16,7 +16,6 @@
 namespace geosis::server::http {
 namespace {
 
-constexpr const char* kImmutable = "public, max-age=31536000, immutable";
 constexpr const char* kBoundary = "geosis-9d1c7a52e6";  // long enough not to occur in a part by chance
 constexpr const char* kMultipart = "multipart/mixed";
 
@@ -95,93 +94,6 @@ Reply stream(Services services, const Request& request) {
   return level_stream_reply(*extraction, {});
 }
 
-/// 409 with the state, for what exists only once the extraction is done.
-Reply not_done(const Extraction& extraction) {
-  const std::string state = name_of(extraction.snapshot().state);
-  return error_reply(
-      {ErrorCode::already_exists, "extraction " + extraction.identity().id + ": it is " + state + ", not done"},
-      {{"state", state}});
-}
-
-Reply manifest(Services services, const Request& request) {
-  const auto extraction = services.extractions.find(request.captures[0]);
-  if (!extraction) return error_reply(extraction.error());
-  const auto now = (*extraction)->snapshot();
-  if (!now.manifest) return not_done(**extraction);
-  Reply reply = json_reply(200, *now.manifest);
-  // Its id names volume, request and result version, of which the manifest is a pure function.
-  reply.headers = {{"Content-Type", "application/json"},
-                   {"Cache-Control", kImmutable},
-                   {"ETag", "\"" + (*extraction)->identity().id + "\""}};
-  return reply;
-}
-
-Reply file_reply(Result<LevelFile> file, const char* type, const std::string& transform) {
-  if (!file) return error_reply(file.error());
-  Reply reply;
-  reply.headers = {{"Content-Type", type}, {"Cache-Control", kImmutable}, {"ETag", "\"" + file->sha256 + "\""}};
-  if (!transform.empty()) reply.headers.emplace_back("X-Geosis-Transform", transform);
-  reply.stream = std::move(file->stream);
-  reply.length = file->bytes;
-  return reply;
-}
-
-/// 404 and 409 as the manifest has them.
-Reply bodies(Services services, const Request& request) {
-  const auto extraction = services.extractions.find(request.captures[0]);
-  if (!extraction) return error_reply(extraction.error());
-  if (!(*extraction)->snapshot().manifest) return not_done(**extraction);
-  const auto answer = [services, id = request.captures[0]] {
-    return file_reply(services.extractions.bodies(id), "application/json", "");
-  };
-  if (services.extractions.are_bodies_made(request.captures[0])) return answer();
-  return after_job(services.extractions.begin_bodies(request.captures[0]), WhenAbandoned::run_on, answer);
-}
-
-int small_number(const std::string& digits) {
-  int number = -1;
-  const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  return problem == std::errc{} ? number : -1;
-}
-
-const char* media_type_of(LevelFormat format) {
-  switch (format) {
-    case LevelFormat::drc:
-      return "model/vnd.google.draco";
-    case LevelFormat::glb:
-      return "model/gltf-binary";
-    case LevelFormat::ply:
-      return "model/ply";
-    case LevelFormat::obj:
-      return "model/obj";
-    case LevelFormat::stl:
-      return "model/stl";
-  }
-  return "application/octet-stream";
-}
-
-Reply level(Services services, const Request& request) {
-  const std::string &id = request.captures[0], format = request.captures[2];
-  const auto extraction = services.extractions.find(id);
-  if (!extraction) return error_reply(extraction.error());
-  if (!(*extraction)->snapshot().manifest) return not_done(**extraction);
-  const LevelFormat wanted = *level_format_of(format);  // the route lets no other through
-  const int number = small_number(request.captures[1]);
-  const auto answer = [services, id, number, wanted] {
-    auto file = services.extractions.level(id, number, wanted);
-    const std::string transform = file ? file->transform : "";
-    return file_reply(std::move(file), media_type_of(wanted), transform);
-  };
-  if (services.extractions.is_level_made(id, number, wanted)) return answer();
-  return after_job(services.extractions.begin_level(id, number, wanted), WhenAbandoned::run_on, answer);
-}
-
-Reply part(Services services, const Request& request) {
-  return file_reply(services.extractions.part(request.captures[0], small_number(request.captures[1]),
-                                              small_number(request.captures[2])),
-                    "model/vnd.google.draco", "");
-}
-
 Reply remove(Services services, const Request& request) {
   if (auto known = only_parameters(request, {"purge"}); !known) return error_reply(known.error());
   const auto purge = flag_parameter(request, "purge", false);
@@ -246,10 +158,6 @@ void add_extraction_routes(Router& router, const ServicesOf& services) {
   router.remove("/v1/extractions/([^/]+)", with(remove));
   router.get("/v1/extractions/([^/]+)/events", with(events));
   router.get("/v1/extractions/([^/]+)/stream", with(stream));
-  router.get("/v1/extractions/([^/]+)/manifest", with(manifest));
-  router.get("/v1/extractions/([^/]+)/bodies", with(bodies));
-  router.get("/v1/extractions/([^/]+)/lods/([0-9]+)\\.(drc|glb|ply|obj|stl)", with(level));
-  router.get("/v1/extractions/([^/]+)/lods/([0-9]+)/parts/([0-9]+)\\.drc", with(part));
 }
 
 }  // namespace geosis::server::http

@@ -6,6 +6,7 @@
 #include "server/app/extractions.h"
 #include "server/app/volumes.h"
 #include "server/http/exchange.h"
+#include "server/http/reply_cache.h"
 #include "server/jobs/job_queue.h"
 #include "server/jobs/memory_budget.h"
 #include "server/store/blob_store.h"
@@ -19,6 +20,7 @@ struct Services {
   Extractions& extractions;
   JobQueue& queue;
   MemoryBudget& memory;
+  ReplyCache& kept;
 };
 
 /// The services of the tenant that a request comes from.

@@ -1,90 +1,144 @@
 #include "server/http/target_matcher.h"
 
 #include <algorithm>
-#include <cstring>
-#include <exception>
-#include <string_view>
-
-#include <httplib.h>
+#include <cstdlib>
+#include <utility>
 
 namespace geosis::server::http {
 namespace {
 
-/// A request in memory; what is written to it disappears.
-class MemoryStream final : public httplib::Stream {
- public:
-  explicit MemoryStream(std::string_view request) : left_(request) {}
-
-  bool is_readable() const override { return !left_.empty(); }
-  bool is_writable() const override { return true; }
-  ssize_t read(char* into, std::size_t size) override {
-    const std::size_t count = std::min(size, left_.size());
-    std::memcpy(into, left_.data(), count);
-    left_.remove_prefix(count);
-    return static_cast<ssize_t>(count);
-  }
-  ssize_t write(const char*, std::size_t size) override { return static_cast<ssize_t>(size); }
-  void get_remote_ip_and_port(std::string& ip, int& port) const override {
-    ip.clear();
-    port = 0;
-  }
-  void get_local_ip_and_port(std::string& ip, int& port) const override { get_remote_ip_and_port(ip, port); }
-  socket_t socket() const override { return INVALID_SOCKET; }
-
- private:
-  std::string_view left_;
-};
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
 
 bool is_control(char c) {
   return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
 }
 
-/// Where this thread's match is noted: the library hands its handlers nothing of ours.
-thread_local TargetMatcher::Match* current_match = nullptr;
+int hexadecimal_digit(char c) {
+  if (is_digit(c)) return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+/// Without percent-encoding. In a query + is a space.
+std::optional<std::string> decoded(std::string_view text, bool is_query) {
+  std::string plain;
+  plain.reserve(text.size());
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '%') {
+      plain += is_query && text[i] == '+' ? ' ' : text[i];
+      continue;
+    }
+    const int high = i + 2 < text.size() ? hexadecimal_digit(text[i + 1]) : -1;
+    const int low = i + 2 < text.size() ? hexadecimal_digit(text[i + 2]) : -1;
+    if (high < 0 || low < 0) return std::nullopt;
+    plain += static_cast<char>(high * 16 + low);
+    i += 2;
+  }
+  return plain;
+}
+
+std::optional<std::multimap<std::string, std::string>> decoded_query(std::string_view text) {
+  std::multimap<std::string, std::string> query;
+  while (!text.empty()) {
+    const std::string_view pair = text.substr(0, text.find('&'));
+    text.remove_prefix(std::min(pair.size() + 1, text.size()));
+    if (pair.empty()) continue;
+    const std::string_view name = pair.substr(0, pair.find('='));
+    auto plain_name = decoded(name, true);
+    auto value = decoded(pair.substr(std::min(name.size() + 1, pair.size())), true);
+    if (!plain_name || !value) return std::nullopt;
+    query.emplace(*std::move(plain_name), *std::move(value));
+  }
+  return query;
+}
+
+std::vector<std::string> words_of(std::string_view text) {
+  std::vector<std::string> words;
+  while (!text.empty()) {
+    words.emplace_back(text.substr(0, text.find('|')));
+    text.remove_prefix(std::min(words.back().size() + 1, text.size()));
+  }
+  return words;
+}
+
+/// How many characters at the start of the path are of this kind.
+std::size_t run_length(std::string_view path, bool digits) {
+  const auto end = std::find_if(path.begin(), path.end(), [=](char c) { return digits ? !is_digit(c) : c == '/'; });
+  return static_cast<std::size_t>(end - path.begin());
+}
 
 }  // namespace
 
-class TargetMatcher::PatternServer final : public httplib::Server {
- public:
-  void add(const std::string& pattern, std::size_t number) {
-    Get(pattern, [number](const httplib::Request& request, httplib::Response&) {
-      current_match->pattern = number;
-      for (std::size_t i = 1; i < request.matches.size(); ++i) current_match->captures.push_back(request.matches[i]);
-    });
+void TargetMatcher::add(std::string_view pattern) {
+  using Kind = Piece::Kind;
+  Pattern pieces;
+  while (!pattern.empty()) {
+    if (pattern.front() == '(') {
+      const std::size_t end = pattern.find(')');
+      if (end == std::string_view::npos) std::abort();
+      const std::string_view inner = pattern.substr(1, end - 1);
+      if (inner.empty() || inner.find('(') != std::string_view::npos) std::abort();
+      pattern.remove_prefix(end + 1);
+      const Kind kind = inner == "[^/]+" ? Kind::segment : inner == "[0-9]+" ? Kind::digits : Kind::word;
+      pieces.push_back({kind, kind == Kind::word ? words_of(inner) : std::vector<std::string>()});
+      continue;
+    }
+    if (pattern == ".*") {
+      pieces.push_back({Kind::rest, {}});
+      break;
+    }
+    if (pattern.front() == '\\') pattern.remove_prefix(1);
+    if (pattern.empty()) std::abort();
+    if (pieces.empty() || pieces.back().kind != Kind::text) pieces.push_back({Kind::text, {""}});
+    pieces.back().texts.front() += pattern.front();
+    pattern.remove_prefix(1);
   }
-
-  bool run(const std::string& target, Match& match) {
-    const std::string request = "GET " + target + " HTTP/1.1\r\nHost: here\r\n\r\n";
-    MemoryStream stream(request);
-    bool closes = true, is_decoded = false;
-    current_match = &match;
-    const bool is_answered = process_request(stream, true, closes, [&](httplib::Request& decoded) {
-      is_decoded = true;
-      match.path = decoded.path;
-      match.query = decoded.params;
-    });
-    current_match = nullptr;
-    return is_answered && is_decoded;
-  }
-};
-
-TargetMatcher::TargetMatcher() : server_(std::make_unique<PatternServer>()) {}
-TargetMatcher::TargetMatcher(TargetMatcher&&) noexcept = default;
-TargetMatcher& TargetMatcher::operator=(TargetMatcher&&) noexcept = default;
-TargetMatcher::~TargetMatcher() = default;
-
-void TargetMatcher::add(const std::string& pattern) noexcept {
-  server_->add(pattern, count_++);
+  patterns_.push_back(std::move(pieces));
 }
 
-std::optional<TargetMatcher::Match> TargetMatcher::match(const std::string& target) const {
-  Match match;
-  try {
-    if (!server_->run(target, match)) return std::nullopt;
-  } catch (const std::exception&) {
-    return std::nullopt;
+bool TargetMatcher::matches(const Pattern& pattern, std::string_view path, std::vector<std::string>& captures) {
+  for (const Piece& piece : pattern) {
+    std::size_t length = 0;
+    switch (piece.kind) {
+      case Piece::Kind::rest:
+        return true;
+      case Piece::Kind::text:
+      case Piece::Kind::word: {
+        const auto found = std::find_if(piece.texts.begin(), piece.texts.end(),
+                                        [&](const std::string& text) { return path.starts_with(text); });
+        if (found == piece.texts.end()) return false;
+        length = found->size();
+        break;
+      }
+      case Piece::Kind::segment:
+      case Piece::Kind::digits:
+        length = run_length(path, piece.kind == Piece::Kind::digits);
+        if (length == 0) return false;
+        break;
+    }
+    if (piece.kind != Piece::Kind::text) captures.emplace_back(path.substr(0, length));
+    path.remove_prefix(length);
   }
-  if (std::any_of(match.path.begin(), match.path.end(), is_control)) return std::nullopt;
+  return path.empty();
+}
+
+std::optional<TargetMatcher::Match> TargetMatcher::match(std::string_view target) const {
+  const std::string_view path = target.substr(0, target.find('?'));
+  auto plain = decoded(path, false);
+  auto query = decoded_query(target.substr(std::min(path.size() + 1, target.size())));
+  if (!plain || !query || std::any_of(plain->begin(), plain->end(), is_control)) return std::nullopt;
+  Match match{std::nullopt, *std::move(plain), *std::move(query), {}};
+  for (std::size_t i = 0; i < patterns_.size(); ++i) {
+    match.captures.clear();
+    if (matches(patterns_[i], match.path, match.captures)) {
+      match.pattern = i;
+      return match;
+    }
+  }
+  match.captures.clear();
   return match;
 }
 

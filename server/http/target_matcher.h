@@ -2,40 +2,47 @@
 
 #include <cstddef>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace geosis::server::http {
 
-/// Decodes a request's target and finds the pattern its path matches.
+/// Decodes a request's target and finds the pattern its path matches, in one pass over the path for each pattern and
+/// without going back: no target takes longer than its length.
 ///
-/// The one place that knows cpp-httplib, and all that is asked of it: it is shown a request line over a stream in
-/// memory and never meets a socket, a header, a body or a range, where its hardening ends.
+/// A pattern is literal text, in which these stand for more:
+///
+///     ([^/]+)      one or more characters of a segment, captured
+///     ([0-9]+)     one or more digits, captured
+///     (drc|glb)    one of these words, captured; none may begin another
+///     .*           whatever follows, at the end only
+///     \x           the character x itself
 class TargetMatcher {
  public:
-  TargetMatcher();
-  TargetMatcher(TargetMatcher&&) noexcept;
-  TargetMatcher& operator=(TargetMatcher&&) noexcept;
-  ~TargetMatcher();
-
-  /// pattern   a regular expression for the whole decoded path; a broken one is our own mistake and ends the program.
-  void add(const std::string& pattern) noexcept;
+  /// A broken pattern is our own mistake and ends the program.
+  void add(std::string_view pattern);
 
   struct Match {
-    std::optional<std::size_t> pattern;  ///< the first added one that matches
+    std::optional<std::size_t> pattern;  ///< number of the first added one that matches
     std::string path;                    ///< decoded
     std::multimap<std::string, std::string> query;
     std::vector<std::string> captures;
   };
-  /// Nothing when the target cannot be decoded, or decodes to control characters.
-  std::optional<Match> match(const std::string& target) const;
+  /// Nothing when the target is not percent-encoded well, or its path decodes to control characters.
+  std::optional<Match> match(std::string_view target) const;
 
  private:
-  class PatternServer;
-  std::unique_ptr<PatternServer> server_;
-  std::size_t count_ = 0;
+  struct Piece {
+    enum class Kind { text, segment, digits, word, rest } kind = Kind::text;
+    std::vector<std::string> texts;  ///< the text, or the words
+  };
+  using Pattern = std::vector<Piece>;
+
+  static bool matches(const Pattern& pattern, std::string_view path, std::vector<std::string>& captures);
+
+  std::vector<Pattern> patterns_;
 };
 
 }  // namespace geosis::server::http

@@ -27,6 +27,7 @@ constexpr const char* kTenant = "default";
 /// Handlers read the store and never wait for results: a few more than processors.
 constexpr std::size_t kHandlerThreads = 16;
 constexpr std::uint64_t kLeastMemory = std::uint64_t{128} << 20;
+constexpr std::size_t kKeptBytes = 64 << 20;     ///< of levels, to be answered from memory
 constexpr std::chrono::seconds kLongestStop{3};  ///< after the time for finishing is over
 
 bool is_loopback(std::string_view listen) {
@@ -139,10 +140,12 @@ Result<void> serve(const ServeOptions& options) {
   Extractions extractions(**store, volumes, queue, kTenant, options.threads);
 
   http::Router router;
-  const http::Services services{**store, volumes, extractions, queue, memory};
+  http::ReplyCache kept(kKeptBytes);
+  const http::Services services{**store, volumes, extractions, queue, memory, kept};
   const http::ServicesOf services_of = [services](const http::Request&) { return services; };
   http::add_volume_routes(router, services_of);
   http::add_extraction_routes(router, services_of);
+  http::add_result_routes(router, services_of);
   http::add_service_routes(router, services, options.page);
   auto front = http::Front::start(front_options(options), std::move(router));
   if (!front) return std::move(front).error();

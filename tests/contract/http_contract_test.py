@@ -306,8 +306,12 @@ class Extractions(Refusals):
 
     def test_purging_removes_the_result_and_asking_again_brings_it_back(self):
         extraction = done_extraction({"range": [0.57, None]})
+        level, part = f"/v1/extractions/{extraction}/lods/0.drc", f"/v1/extractions/{extraction}/lods/0/parts/0.drc"
+        for target in (level, part, level, part):  # the second time from memory
+            self.assertEqual(CLIENT.get(target).status, 200)
         self.assertEqual(CLIENT.call("DELETE", f"/v1/extractions/{extraction}?purge=true").status, 204)
-        self.refused(CLIENT.get(f"/v1/extractions/{extraction}"), 404, "not_found")
+        for target in (f"/v1/extractions/{extraction}", level, part):
+            self.refused(CLIENT.get(target), 404, "not_found")
         self.assertEqual(done_extraction({"range": [0.57, None]}), extraction)
 
     def test_interest_can_be_withdrawn(self):

@@ -100,7 +100,7 @@ class Doorkeeper final : public Middleware {
 
 Dispatcher guarded_dispatcher(Doorkeeper& keeper) {
   Router routes;
-  routes.get("/things/([^/]+)\\.(a|(b|c))", [](const Request& request) {
+  routes.get("/things/([0-9]+)\\.(a|b)", [](const Request& request) {
     Reply reply;
     reply.body = request.tenant;
     return reply;
@@ -111,20 +111,20 @@ Dispatcher guarded_dispatcher(Doorkeeper& keeper) {
 TEST(Dispatcher, AsksTheMiddlewareBeforeTheHandler) {
   Doorkeeper keeper;
   const Dispatcher dispatcher = guarded_dispatcher(keeper);
-  const Reply refused = answer_of(dispatcher, "GET", "/things/x.a");
+  const Reply refused = answer_of(dispatcher, "GET", "/things/1.a");
   EXPECT_EQ(refused.status, 401);
   EXPECT_NE(refused.body.find("unauthenticated"), std::string::npos);
   EXPECT_FALSE(header_of(refused, "WWW-Authenticate").empty());
-  EXPECT_EQ(answer_of(dispatcher, "GET", "/things/x.a", {{"x-key", "blue"}}).body, "blue");
+  EXPECT_EQ(answer_of(dispatcher, "GET", "/things/1.a", {{"x-key", "blue"}}).body, "blue");
   // What nobody answers needs no key.
   EXPECT_EQ(answer_of(dispatcher, "GET", "/nothing").status, 404);
-  EXPECT_EQ(answer_of(dispatcher, "OPTIONS", "/things/x.a").status, 204);
+  EXPECT_EQ(answer_of(dispatcher, "OPTIONS", "/things/1.a").status, 204);
 }
 
 TEST(Dispatcher, TellsTheMiddlewareWhatBecameOfARequest) {
   Doorkeeper keeper;
   const Dispatcher dispatcher = guarded_dispatcher(keeper);
-  Reply reply = answer_of(dispatcher, "GET", "/things/x.b", {{"x-key", "blue"}, {"x-request-id", "r1"}});
+  Reply reply = answer_of(dispatcher, "GET", "/things/1.b", {{"x-key", "blue"}, {"x-request-id", "r1"}});
   ASSERT_TRUE(reply.on_written);
   EXPECT_TRUE(keeper.told.empty());
   reply.on_written(77, false);

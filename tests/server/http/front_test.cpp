@@ -112,6 +112,14 @@ class FrontTest : public testing::Test {
              })
         .get("/short", [](const Request&) { return stream_reply(std::make_unique<CountedStream>(10), 20); })
         .get("/counted", [](const Request&) { return stream_reply(std::make_unique<CountedStream>(200'000), 200'000); })
+        .get(
+            "/quick", [](const Request&) { return text_reply("slow"); },
+            [](const Request& request) -> std::optional<Reply> {
+              if (request.header("x-slow")) return std::nullopt;
+              Reply reply;
+              reply.shared = std::make_shared<const std::string>("quick as can be");
+              return reply;
+            })
         .get("/body", [](const Request&) { return text_reply(std::string(kLargeBytes, 'x')); })
         .get("/large",
              [this](const Request&) {
@@ -163,6 +171,35 @@ TEST_F(FrontTest, AnswersPipelinedRequestsInOrder) {
     const std::string number = std::to_string(i);
     EXPECT_EQ(body_of(client.read_answer()), i % 2 ? "x|" + number + "|" : number);
   }
+}
+
+TEST_F(FrontTest, AnswersFromMemoryWithoutAHandlersThread) {
+  FrontOptions options;
+  options.handler_threads = 1;
+  options.queued_requests = 1;
+  start(options);
+  RawClient running(port_);
+  running.send("GET /hold HTTP/1.1\r\nHost: a\r\n\r\n");
+  EXPECT_TRUE(holds_soon([&] { return held_ == 1; }));
+  EXPECT_EQ(body_of(get("/quick")), "quick as can be");
+  EXPECT_EQ(body_of(get("/quick", "Range: bytes=6-7\r\n")), "as");
+  EXPECT_EQ(header_of(ask(port_, "HEAD /quick"), "Content-Length"), "15");
+  EXPECT_EQ(body_of(ask(port_, "HEAD /quick")), "");
+  release_.set_value();
+  EXPECT_EQ(body_of(get("/quick", "X-Slow: 1\r\n")), "slow");
+}
+
+TEST_F(FrontTest, AnswersManyPipelinedRequestsFromMemoryOneAfterTheOther) {
+  start();
+  constexpr int kRequests = 20'000;
+  RawClient client(port_);
+  std::thread sender([&] {
+    for (int i = 0; i < kRequests; ++i) client.send("GET /quick HTTP/1.1\r\nHost: a\r\n\r\n");
+  });
+  int answers = 0;
+  while (answers < kRequests && status_of(client.read_answer()) == 200) ++answers;
+  sender.join();
+  EXPECT_EQ(answers, kRequests);
 }
 
 TEST_F(FrontTest, TakesHeadsByteByByte) {

@@ -20,7 +20,7 @@ constexpr double kErrorCapAtRatioOne = 0.12;
 
 Result<void> check_input(const IndexedMesh& m0, const BuildLodsOptions& options, Progress& progress) {
   if (auto sound = check_targets(options); !sound) return sound;
-  if (auto sound = check_m0(m0); !sound) return sound;
+  if (auto sound = check_m0(m0, options.threads); !sound) return sound;
   progress.report("simplify", 0);
   if (progress.cancelled()) return Error{ErrorCode::cancelled, "levels of detail: cancelled"};
   return {};

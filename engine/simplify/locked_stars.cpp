@@ -4,27 +4,31 @@
 #include <span>
 
 #include "engine/base/parallel.h"
+#include "engine/simplify/chunks.h"
 #include "engine/simplify/first_star.h"
 
 namespace geosis {
 namespace {
 
-constexpr std::size_t kChunks = 16;
-
-/// Calls visit(a, b, c) for each corner a of each triangle, inside a window or crossing, over places.
+/// Calls visit(a, b, c) for each corner a of each triangle with a locked vertex, over places: first those inside
+/// windows, window by window on several threads, then the crossing ones. A window's triangles have its own vertices
+/// alone.
 template <class Visit>
-void for_corners(Partition& partition, const Visit& visit) {
+void for_corners(Partition& partition, int threads, const Visit& visit) {
   const auto visit_all = [&](std::int32_t a, std::int32_t b, std::int32_t c) {
     visit(a, b, c);
     visit(b, c, a);
     visit(c, a, b);
   };
-  for (std::int32_t w = 0; w < partition.windows; ++w) {
+  parallel_for(static_cast<std::size_t>(partition.windows), threads, [&](std::size_t window) {
+    const auto w = static_cast<std::int32_t>(window);
     const std::int32_t first = partition.first_vertex(w);
     const std::uint8_t* locked = &partition.locked[first];
     for (const auto& [a, b, c] : partition.triangles_of(w)) {
       if ((locked[a] | locked[b] | locked[c]) != 0) visit_all(first + a, first + b, first + c);
     }
+  });
+  for (std::int32_t w = 0; w < partition.windows; ++w) {
     for (const auto& [a, b, c] : partition.crossing_of(w)) visit_all(a, b, c);
   }
 }
@@ -38,23 +42,23 @@ LockedStars::LockedStars(const WorkingMesh& mesh, Partition& partition, int thre
     places_.push_back(static_cast<std::int32_t>(place));
   }
   vertices_ = Buffer<WorkingVertex>(places_.size());
-  count(partition);
-  fill(partition);
+  count(partition, threads);
+  fill(partition, threads);
   start(mesh, partition, threads);
 }
 
-void LockedStars::count(Partition& partition) {
+void LockedStars::count(Partition& partition, int threads) {
   first_.assign(places_.size() + 1, 0);
-  for_corners(partition, [&](std::int32_t a, std::int32_t, std::int32_t) {
+  for_corners(partition, threads, [&](std::int32_t a, std::int32_t, std::int32_t) {
     if (partition.locked[a]) ++first_[slot_[a] + 1];
   });
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
 }
 
-void LockedStars::fill(Partition& partition) {
+void LockedStars::fill(Partition& partition, int threads) {
   pairs_ = Buffer<Pair>(first_.back());
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  for_corners(partition, [&](std::int32_t a, std::int32_t b, std::int32_t c) {
+  for_corners(partition, threads, [&](std::int32_t a, std::int32_t b, std::int32_t c) {
     if (partition.locked[a]) pairs_[next[slot_[a]]++] = {b, c};
   });
 }
@@ -62,8 +66,8 @@ void LockedStars::fill(Partition& partition) {
 void LockedStars::start(const WorkingMesh& mesh, const Partition& partition, int threads) {
   std::atomic<bool> sound = true;
   const auto position = [&](std::int32_t place) { return mesh.position(partition.order[place]); };
-  parallel_for(kChunks, threads, [&](std::size_t chunk) {
-    for (std::size_t i = places_.size() * chunk / kChunks; i < places_.size() * (chunk + 1) / kChunks; ++i) {
+  for_chunks(places_.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
       vertices_[i] = mesh.vertex(partition.order[places_[i]]);
       const std::span<const Pair> ring(pairs_.data() + first_[i], first_[i + 1] - first_[i]);
       if (!start_vertex(vertices_[i], places_[i], ring, position)) sound = false;

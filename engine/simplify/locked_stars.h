@@ -27,8 +27,8 @@ class LockedStars {
     std::int32_t a, b;  // places
   };
 
-  void count(Partition& partition);
-  void fill(Partition& partition);
+  void count(Partition& partition, int threads);
+  void fill(Partition& partition, int threads);
   void start(const WorkingMesh& mesh, const Partition& partition, int threads);
 
   Buffer<std::int32_t> slot_;         // place -> number of the locked vertex

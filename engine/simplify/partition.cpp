@@ -2,25 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <numeric>
 #include <utility>
 
 #include "engine/base/parallel.h"
+#include "engine/simplify/chunks.h"
 
 namespace geosis {
 namespace {
-
-/// Fixed, so that the pieces in which work is shared out do not depend on the number of threads.
-constexpr std::size_t kChunks = 16;
-
-struct Range {
-  std::size_t begin, end;
-};
-
-Range chunk_of(std::size_t size, std::size_t chunk) {
-  return {size * chunk / kChunks, size * (chunk + 1) / kChunks};
-}
 
 /// Calls visit(v) for every vertex of one chunk of the mesh's segments, in order.
 template <class Visit>
@@ -231,9 +222,13 @@ Partition make_partition(const WorkingMesh& mesh, std::int32_t window_size, std:
   }
   TriangleSort(mesh.triangles(), place, partition).run(threads);
   partition.locked.assign(mesh.vertices(), 0);
-  for (std::size_t t = 0; t < partition.first_crossing.back(); ++t) {
-    for (const std::int32_t v : partition.crossing[t]) partition.locked[v] = 1;
-  }
+  for_chunks(partition.first_crossing.back(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      for (const std::int32_t v : partition.crossing[t]) {
+        std::atomic_ref(partition.locked[v]).store(1, std::memory_order_relaxed);
+      }
+    }
+  });
   return partition;
 }
 

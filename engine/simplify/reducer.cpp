@@ -23,7 +23,7 @@ bool is_short_of(std::int64_t triangles, std::int64_t target) {
 }  // namespace
 
 Reducer::Reducer(const IndexedMesh& m0, const ReducerOptions& options, Watch& watch)
-    : mesh_(m0), options_(options), watch_(&watch) {}
+    : mesh_(m0, options.threads), options_(options), watch_(&watch) {}
 
 Reducer::Reducer(const Reducer& other)
     : mesh_(other.mesh_.clone()),
@@ -58,7 +58,7 @@ std::int64_t Reducer::triangles() const {
 }
 
 LodLevel Reducer::snapshot() const {
-  return whole_ ? to_level(store_whole()) : to_level(mesh_);
+  return whole_ ? to_level(store_whole(), 1) : to_level(mesh_, options_.threads);
 }
 
 PassEnd Reducer::remove(const std::function<bool(std::int32_t origin)>& goes) {

@@ -1,30 +1,65 @@
 #include "engine/simplify/working_mesh.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
+
+#include "engine/simplify/chunks.h"
 
 namespace geosis {
 namespace {
 
-Box bounds_of(const std::vector<Vec3f>& positions) {
-  if (positions.empty()) return {};
-  Box box{positions[0], positions[0]};
-  for (const Vec3f& p : positions) {
-    for (int axis = 0; axis < 3; ++axis) {
-      box.low[axis] = std::min(box.low[axis], p[axis]);
-      box.high[axis] = std::max(box.high[axis], p[axis]);
-    }
+void grow(Box& box, const Box& by) {
+  for (int axis = 0; axis < 3; ++axis) {
+    box.low[axis] = std::min(box.low[axis], by.low[axis]);
+    box.high[axis] = std::max(box.high[axis], by.high[axis]);
   }
-  return box;
+}
+
+Box bounds_of(const std::vector<Vec3f>& positions, int threads) {
+  if (positions.empty()) return {};
+  std::array<Box, kChunks> boxes;
+  for_chunks(positions.size(), threads, [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    Box box{positions[0], positions[0]};
+    for (std::size_t v = begin; v < end; ++v) grow(box, {positions[v], positions[v]});
+    boxes[chunk] = box;
+  });
+  for (const Box& box : boxes) grow(boxes[0], box);
+  return boxes[0];
+}
+
+/// The vertices that a triangle uses.
+std::vector<std::uint8_t> used_vertices(const WorkingMesh& mesh) {
+  std::vector<std::uint8_t> used(mesh.slots(), 0);
+  for (const Triangle& triangle : mesh.triangles()) {
+    for (const std::int32_t v : triangle) used[v] = 1;
+  }
+  return used;
+}
+
+/// A level of M0 itself, which may have vertices without triangles; later none has.
+LodLevel level_of_m0(const WorkingMesh& mesh) {
+  const auto used = used_vertices(mesh);
+  std::vector<std::int32_t> place(used.size());
+  LodLevel level;
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (!used[v]) continue;
+    place[v] = static_cast<std::int32_t>(level.origin.size());
+    level.mesh.positions.push_back(mesh.position(v));
+    level.origin.push_back(static_cast<std::int32_t>(v));
+  }
+  level.mesh.triangles.reserve(mesh.triangles().size());
+  for (const auto& [a, b, c] : mesh.triangles()) level.mesh.triangles.push_back({place[a], place[b], place[c]});
+  return level;
 }
 
 }  // namespace
 
-WorkingMesh::WorkingMesh(const IndexedMesh& m0)
+WorkingMesh::WorkingMesh(const IndexedMesh& m0, int threads)
     : m0_(&m0),
       segments_{{0, m0.positions.size()}},
       vertex_count_(m0.positions.size()),
-      bounds_(bounds_of(m0.positions)) {}
+      bounds_(bounds_of(m0.positions, threads)) {}
 
 WorkingMesh::WorkingMesh(Buffer<WorkingVertex> vertices, std::vector<Segment> segments, Buffer<Triangle> triangles,
                          const Box& bounds)
@@ -36,7 +71,7 @@ WorkingMesh::WorkingMesh(Buffer<WorkingVertex> vertices, std::vector<Segment> se
 }
 
 WorkingMesh WorkingMesh::clone() const {
-  if (m0_) return WorkingMesh(*m0_);
+  if (m0_) return WorkingMesh(*m0_, 1);
   return WorkingMesh(vertices_.clone(), segments_, triangles_.clone(), bounds_);
 }
 
@@ -63,24 +98,32 @@ WorkingMesh without(const WorkingMesh& mesh, const std::function<bool(std::int32
   return WorkingMesh(std::move(vertices), {{0, count}}, std::move(triangles), mesh.bounds());
 }
 
-LodLevel to_level(const WorkingMesh& mesh) {
-  constexpr std::int32_t kUnused = -1;
-  std::vector<std::int32_t> place(mesh.slots(), kUnused);
-  for (const Triangle& triangle : mesh.triangles()) {
-    for (const std::int32_t v : triangle) place[v] = 0;
-  }
+LodLevel to_level(const WorkingMesh& mesh, int threads) {
+  if (mesh.m0()) return level_of_m0(mesh);
+  const std::vector<Segment>& segments = mesh.segments();
+  std::vector<std::size_t> first(segments.size() + 1, 0);
+  for (std::size_t s = 0; s < segments.size(); ++s) first[s + 1] = first[s] + segments[s].end - segments[s].begin;
+  Buffer<std::int32_t> place(mesh.slots());
   LodLevel level;
-  for (const auto& [begin, end] : mesh.segments()) {
-    for (std::size_t v = begin; v < end; ++v) {
-      if (place[v] == kUnused) continue;
-      place[v] = static_cast<std::int32_t>(level.origin.size());
-      const WorkingVertex vertex = mesh.vertex(v);
-      level.mesh.positions.push_back(vertex.position);
-      level.origin.push_back(vertex.origin);
+  level.mesh.positions.resize(mesh.vertices());
+  level.origin.resize(mesh.vertices());
+  level.mesh.triangles.resize(mesh.triangles().size());
+  for_chunks(segments.size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      for (std::size_t v = segments[s].begin, to = first[s]; v < segments[s].end; ++v, ++to) {
+        const WorkingVertex vertex = mesh.vertex(v);
+        place[v] = static_cast<std::int32_t>(to);
+        level.mesh.positions[to] = vertex.position;
+        level.origin[to] = vertex.origin;
+      }
     }
-  }
-  level.mesh.triangles.reserve(mesh.triangles().size());
-  for (const auto& [a, b, c] : mesh.triangles()) level.mesh.triangles.push_back({place[a], place[b], place[c]});
+  });
+  for_chunks(mesh.triangles().size(), threads, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto& [a, b, c] = mesh.triangles()[t];
+      level.mesh.triangles[t] = {place[a], place[b], place[c]};
+    }
+  });
   return level;
 }
 

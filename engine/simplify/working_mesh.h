@@ -26,7 +26,7 @@ struct Segment {
 /// Before the first pass there are no records yet: vertices and triangles are M0's.
 class WorkingMesh {
  public:
-  explicit WorkingMesh(const IndexedMesh& m0);  ///< which must stay until the first pass is over
+  explicit WorkingMesh(const IndexedMesh& m0, int threads = 1);  ///< which must stay until the first pass is over
   WorkingMesh(Buffer<WorkingVertex> vertices, std::vector<Segment> segments, Buffer<Triangle> triangles,
               const Box& bounds);
 
@@ -62,6 +62,6 @@ class WorkingMesh {
 WorkingMesh without(const WorkingMesh& mesh, const std::function<bool(std::int32_t origin)>& goes);
 
 /// The plain mesh with its origins, without unused vertices.
-LodLevel to_level(const WorkingMesh& mesh);
+LodLevel to_level(const WorkingMesh& mesh, int threads);
 
 }  // namespace geosis

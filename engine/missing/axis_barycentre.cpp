@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdlib>
 #include <utility>
@@ -114,7 +115,7 @@ Estimate combine(const std::array<std::array<Estimate, 2>, 3>& met) {
 
 std::uint8_t reliability_of(double distance) {
   const double ratio = distance / kHalfReliable;
-  return static_cast<std::uint8_t>(254 / (1 + ratio * ratio * ratio) + 0.5);
+  return static_cast<std::uint8_t>(std::floor(254 / (1 + ratio * ratio * ratio) + 0.5));
 }
 
 /// What the nodes of a row met. Values and distances are left unset where nothing was met: there are many rows, and

@@ -31,7 +31,8 @@ class BrickViews {
     const std::int32_t bi = std::min(i / kBrickCells, grid.inlines - 1);
     const std::int32_t bj = std::min(j / kBrickCells, grid.crosslines - 1);
     const BrickView& brick = views_[(static_cast<std::size_t>(bi) * grid.crosslines + bj) * grid.samples + brick_k];
-    return brick.samples + ((i - brick.first.i) * brick.extent.crosslines + (j - brick.first.j)) * brick.extent.samples;
+    const std::int32_t trace = (i - brick.first.i) * brick.extent.crosslines + (j - brick.first.j);
+    return brick.samples + static_cast<std::ptrdiff_t>(trace) * brick.extent.samples;
   }
   float at(GridIndex node) const {
     const std::int32_t brick_k = std::min(node.k / kBrickCells, layout_.grid().samples - 1);

@@ -31,7 +31,7 @@ void include(std::span<ValueRange, kBlocksPerBrick> blocks, const std::array<Blo
   for (std::int32_t a = with[0].first; a <= with[0].last; ++a)
     for (std::int32_t b = with[1].first; b <= with[1].last; ++b)
       for (std::int32_t c = with[2].first; c <= with[2].last; ++c)
-        include(blocks[static_cast<std::size_t>((a * kBlocksPerAxis + b) * kBlocksPerAxis + c)], value);
+        include(blocks[(static_cast<std::size_t>(a) * kBlocksPerAxis + b) * kBlocksPerAxis + c], value);
 }
 
 }  // namespace

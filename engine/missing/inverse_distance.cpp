@@ -41,7 +41,7 @@ class NearSamples {
   void load(const SampleBox& box, const GridBox& nodes, Vec3d steps, double scale) {
     first_ = nodes.first;
     steps_ = {static_cast<float>(steps.x), static_cast<float>(steps.y), static_cast<float>(steps.z)};
-    const auto count = static_cast<std::size_t>(nodes.last.k - nodes.first.k + 1);
+    const auto count = static_cast<std::size_t>(nodes.last.k - nodes.first.k) + 1;
     length_ = (count + kRowLanes - 1) / kRowLanes * kRowLanes;
     const auto rows = static_cast<std::size_t>(nodes.last.i - nodes.first.i + 1) *
                       static_cast<std::size_t>(nodes.last.j - nodes.first.j + 1);

@@ -64,7 +64,7 @@ Stencil mixed_difference(int axis_a, int axis_b, int step_a, int step_b) {
 }
 
 const std::vector<Stencil>& stencils_of_a_node() {
-  static const std::vector<Stencil> all = [] {
+  static const std::vector<Stencil> kAll = [] {
     std::vector<Stencil> stencils;
     for (int axis = 0; axis < 3; ++axis)
       for (int shift = -1; shift <= 1; ++shift) stencils.push_back(second_difference(axis, shift));
@@ -74,7 +74,7 @@ const std::vector<Stencil>& stencils_of_a_node() {
           for (const int step_b : {-1, 1}) stencils.push_back(mixed_difference(a, b, step_a, step_b));
     return stencils;
   }();
-  return all;
+  return kAll;
 }
 
 PlateRow make_row(std::uint32_t available, Vec3d weights) {

@@ -27,7 +27,7 @@ Result<BrickView> reliabilities_of(const FilledVolume& volume, std::size_t brick
 
 std::uint8_t as_byte(float reliability) {
   if (reliability == float{kMeasured}) return kMeasured;
-  return static_cast<std::uint8_t>(std::min(reliability, kMostOfFilled) + 0.5f);
+  return static_cast<std::uint8_t>(std::floor(std::min(reliability, kMostOfFilled) + 0.5f));
 }
 
 }  // namespace

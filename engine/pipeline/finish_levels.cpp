@@ -26,6 +26,9 @@ Error of_part(std::size_t part, const Error& error) {
 }  // namespace
 
 struct LevelFinisher::Work {
+  Work(std::size_t its_number, ReconstructedLevel& its_level, const IndexedMesh& its_mesh)
+      : number(its_number), level(its_level), mesh(its_mesh) {}
+
   const std::size_t number;
   ReconstructedLevel& level;
   const IndexedMesh& mesh;

@@ -135,8 +135,8 @@ Result<std::vector<LodLevel>> build_all(const IndexedMesh& m0, const BuildLodsOp
 }  // namespace
 
 std::vector<LevelTarget> by_ratio(const std::vector<double>& ratios) {
-  std::vector<LevelTarget> levels;
-  for (const double ratio : ratios) levels.push_back({.ratio = ratio});
+  std::vector<LevelTarget> levels(ratios.size());
+  for (std::size_t k = 0; k < ratios.size(); ++k) levels[k].ratio = ratios[k];
   return levels;
 }
 

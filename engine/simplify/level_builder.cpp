@@ -1,5 +1,6 @@
 #include "engine/simplify/level_builder.h"
 
+#include <cmath>
 #include <cstdint>
 #include <utility>
 
@@ -10,7 +11,7 @@ namespace geosis {
 namespace {
 
 std::int64_t triangles_for(double ratio, std::size_t triangles) {
-  return static_cast<std::int64_t>(ratio * static_cast<double>(triangles) + 0.5);
+  return static_cast<std::int64_t>(std::floor(ratio * static_cast<double>(triangles) + 0.5));
 }
 
 /// Triangles between M0 and the last level, as far as that is known before.

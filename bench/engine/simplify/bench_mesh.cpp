@@ -1,10 +1,9 @@
 #include "bench/engine/simplify/bench_mesh.h"
 
 #include <array>
-#include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -146,7 +145,7 @@ Result<BenchMesh> file_surface(const Specification& asked) {
     const auto dims = split(asked.numbers[0], ',');
     options.format = FileFormat::raw;
     options.dims = GridShape{whole_number(dims.at(0)), whole_number(dims.at(1)), whole_number(dims.at(2))};
-    options.dtype = SampleType::uint8;
+    options.dtype = asked.kind.ends_with(".f32") ? SampleType::float32 : SampleType::uint8;
     options.order = RawOrder::inline_fastest;
   }
   NoProgress progress;

@@ -25,7 +25,7 @@ struct BenchMesh {
 ///                       by :holes
 ///   gyroid:NODES        with noise
 ///   FILE.sgy            a survey
-///   FILE.raw:I,J,K      unsigned bytes, inline fastest
+///   FILE.raw:I,J,K      unsigned bytes, inline fastest; FILE.f32:I,J,K float32
 ///
 /// then optionally :range=LOW,HIGH and :open for rims that are not capped.
 ///

@@ -77,6 +77,28 @@ bool write_fill_seed(const std::filesystem::path& folder) {
       .has_value();
 }
 
+// What clients send. The targets of chunks and forms take the size of pieces from a byte before them.
+bool write_text_seeds(const std::filesystem::path& folder) {
+  const std::string request =
+      R"({"range": [0.5, null], "mode": "exact", "missing": {"method": "rbf", "kernel": "polyharmonic", "steer": "auto",
+      "max_distance": 4}, "grid": "given", "space": "world", "velocity": 2000, "cap": true, "region": {"inline": [0, 7],
+      "crossline": [0, 18], "sample": [0, 26]}, "bodies": {"min_voxels": 3, "largest": 2, "seeds": [[1, 2, 3]]}, "levels":
+      [{"ratio": 1}, {"max_error": 2.0, "error_cap": 1, "drop": {"max_voxels": 1, "max_error": 0}}, {"max_cost": 4}],
+      "simplify": {"strategy": "greedy", "placement": "optimal", "seed": 1}, "codec": {"position_bits": 14, "normals": true,
+      "speed": 3}, "attributes": ["reliability", "body"], "attribute_volume": null, "preview": false})";
+  const std::string form =
+      "--b\r\nContent-Disposition: form-data; name=\"options\"\r\n\r\n{\"format\": \"raw\"}\r\n"
+      "--b\r\nContent-Disposition: form-data; name=\"file\"; filename=\"a.sgy\"\r\n\r\n\r\n--a\r\n--b--\r\n";
+  return write_file(folder / "fuzz_request" / "whole", request) &&
+         write_file(folder / "fuzz_http_head" / "post",
+                    "POST /v1/volumes?name=a HTTP/1.1\r\nHost: a:80\r\nTransfer-Encoding: chunked\r\n"
+                    "Expect: 100-continue\r\nConnection: keep-alive, close\r\n\r\n") &&
+         write_file(folder / "fuzz_http_head" / "get", "GET / HTTP/1.1\r\nHost: [::1]\r\nContent-Length: 0\r\n\r\n") &&
+         write_file(folder / "fuzz_http_chunks" / "two", "\3A;a=\"b\"\r\n0123456789\r\n1\r\nx\r\n0\r\nA: b\r\n\r\n") &&
+         write_file(folder / "fuzz_http_target" / "level", "/v1/extractions/a%2Db/lods/12.glb?x=1+2&y=%c3%a4") &&
+         write_file(folder / "fuzz_http_form" / "two", "\5" + form);
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
@@ -86,10 +108,11 @@ int main(int count, char** arguments) {
   }
   const std::filesystem::path folder = arguments[1];
   std::error_code failed;
-  for (const char* target : {"fuzz_import_segy", "fuzz_import_raw", "fuzz_brick_file", "fuzz_fill_file"})
+  for (const char* target : {"fuzz_import_segy", "fuzz_import_raw", "fuzz_brick_file", "fuzz_fill_file", "fuzz_request",
+                             "fuzz_http_head", "fuzz_http_chunks", "fuzz_http_target", "fuzz_http_form"})
     std::filesystem::create_directories(folder / target, failed);
   const bool written = !failed && write_segy_seed(folder / "fuzz_import_segy") &&
                        write_raw_seed(folder / "fuzz_import_raw") && write_brick_seed(folder / "fuzz_brick_file") &&
-                       write_fill_seed(folder / "fuzz_fill_file");
+                       write_fill_seed(folder / "fuzz_fill_file") && write_text_seeds(folder);
   return written ? 0 : 1;
 }

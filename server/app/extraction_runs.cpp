@@ -99,6 +99,7 @@ Result<void> Extractions::compute(Extraction& extraction, const std::string& own
   if (!watch_.holds(extraction, owner)) return Error{ErrorCode::cancelled, "nobody wants it, or others compute it"};
   if (auto done = write_document(key(identity.id, kManifest), *manifest); !done) return done;
   extraction.complete(*std::move(manifest), timings);
+  if (events_.computed) events_.computed(identity, timings);
   return {};
 }
 

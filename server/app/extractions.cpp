@@ -116,8 +116,12 @@ Result<std::shared_ptr<Extraction>> Extractions::create(const std::string& volum
   if (*is_recorded) {
     const auto has_joined = join(*entry);
     if (!has_joined) return has_joined.error();
-    if (*has_joined) return entry->extraction;
+    if (*has_joined) {
+      if (events_.asked) events_.asked(true);
+      return entry->extraction;
+    }
   }
+  if (events_.asked) events_.asked(false);
   return record_and_start(*entry, {id, volume, timestamp(), std::move(canonical)}, *is_recorded, priority);
 }
 

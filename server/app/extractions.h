@@ -38,6 +38,12 @@ struct LevelFile {
   std::string transform;  ///< 16 numbers, for drc
 };
 
+/// Who wants to know what happens; both may be empty. Called from any thread; must not throw.
+struct ExtractionEvents {
+  std::function<void(bool is_hit)> asked = {};  ///< create(): a hit was there already, or under way
+  std::function<void(const Extraction::Identity&, const ExtractionTimings&)> computed = {};
+};
+
 /// Use cases around extractions, without any transport. Any thread may call any member. The queue must have stopped
 /// before this object goes.
 ///
@@ -52,6 +58,9 @@ class Extractions {
   /// threads   that one extraction may use.
   Extractions(BlobStore& store, Volumes& volumes, JobQueue& queue, std::string tenant, int threads,
               ReconstructFunction reconstruct = geosis::reconstruct, WatchTiming timing = {});
+
+  /// Set before anything is asked.
+  void on_events(ExtractionEvents events) { events_ = std::move(events); }
 
   /// Records the request durably and starts it, unless it is done or running; equal requests are computed once. A
   /// failed or cancelled one starts again. Adds one interest.
@@ -172,6 +181,7 @@ class Extractions {
   const std::string tenant_;
   const int threads_;
   const ReconstructFunction reconstruct_;
+  ExtractionEvents events_;
   Fills fills_;
   std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Entry>> entries_;  ///< recently used, by id

@@ -21,6 +21,27 @@ Located locate(const std::string& message) {
   return {message.substr(start, colon - start), message.substr(colon + 2)};
 }
 
+bool ends_path(char c) {
+  return c == ' ' || c == '"' || c == '\'' || c == ',' || c == ';' || c == ')' || c == '\n';
+}
+
+/// The message without absolute paths of files: what lies where on this machine is nobody's business. Paths of this
+/// service's own (/v1/...) and names after a single slash (JSON pointers) stay.
+std::string without_paths(const std::string& message) {
+  std::string result;
+  for (std::size_t at = 0; at < message.size();) {
+    const bool may_begin = message[at] == '/' && (at == 0 || ends_path(message[at - 1]) || message[at - 1] == '(');
+    std::size_t end = at + 1;
+    while (may_begin && end < message.size() && !ends_path(message[end])) ++end;
+    std::string_view word = std::string_view(message).substr(at, may_begin ? end - at : 1);
+    if (may_begin && word.ends_with(':')) word.remove_suffix(1);
+    const bool is_path = may_begin && word.find('/', 1) != std::string_view::npos && !word.starts_with("/v1/");
+    result += is_path ? "a file" : std::string(word);
+    at += word.size();
+  }
+  return result;
+}
+
 }  // namespace
 
 Json problem_document(const Error& error) {
@@ -29,7 +50,7 @@ Json problem_document(const Error& error) {
   Json problem = {{"type", std::string("urn:geosis:problem:") + name_of(error.code)},
                   {"title", numbers.title},
                   {"status", numbers.http_status},
-                  {"detail", located.detail},
+                  {"detail", without_paths(located.detail)},
                   {"code", name_of(error.code)}};
   if (!located.pointer.empty()) problem["pointer"] = located.pointer;
   return problem;

@@ -56,6 +56,9 @@ Front::~Front() = default;
 std::uint16_t Front::port() const {
   return running_->loop().port();
 }
+std::size_t Front::connections() const {
+  return running_->loop().connections();
+}
 bool Front::drain(std::chrono::milliseconds grace) {
   return running_->loop().drain(grace);
 }

@@ -37,6 +37,8 @@ class Front {
   ~Front();
 
   std::uint16_t port() const;
+  /// Connections that are open now.
+  std::size_t connections() const;
 
   /// Takes no more connections and requests, lets running ones finish. True when all had finished within `grace`.
   bool drain(std::chrono::milliseconds grace);

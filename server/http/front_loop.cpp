@@ -100,6 +100,7 @@ void FrontLoop::admit(Listener::Accepted accepted) {
   const std::uint64_t id = next_id_++;
   ConnectionOwner& owner = *this;
   auto connection = std::make_unique<Connection>(id, std::move(channel), std::move(accepted.peer), owner);
+  open_connections_ = connections_.size() + 1;
   settle(*connections_.emplace(id, std::move(connection)).first->second);
 }
 
@@ -174,6 +175,7 @@ void FrontLoop::remove(Connection& connection) {
   const auto peer = peers_.find(connection.peer());
   if (--peer->second == 0) peers_.erase(peer);
   connections_.erase(connection.id());
+  open_connections_ = connections_.size();
 }
 
 template <class Action>

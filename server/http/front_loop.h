@@ -31,6 +31,7 @@ class FrontLoop final : private ConnectionOwner {
 
   // From any thread:
   std::uint16_t port() const { return port_; }
+  std::size_t connections() const { return open_connections_; }
   bool drain(std::chrono::milliseconds grace);
   void stop();
 
@@ -77,6 +78,7 @@ class FrontLoop final : private ConnectionOwner {
   std::uint16_t port_;
   std::uint64_t next_id_;
   std::unordered_map<std::uint64_t, std::unique_ptr<Connection>> connections_;
+  std::atomic<std::size_t> open_connections_ = 0;
   std::map<std::string, std::size_t> peers_;  ///< connections by address
   Connection::Clock::time_point next_tick_;
 

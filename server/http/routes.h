@@ -1,6 +1,10 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "server/http/router.h"
 #include "server/http/services.h"
@@ -13,9 +17,22 @@ void add_volume_routes(Router& router, const ServicesOf& services);
 void add_extraction_routes(Router& router, const ServicesOf& services);
 /// /v1/extractions/{id}/manifest, bodies, lods and below.
 void add_result_routes(Router& router, const ServicesOf& services);
+/// What probes ask: why this server should get no requests (empty = it should), and why it should be started again.
+struct HealthChecks {
+  std::function<std::vector<std::string>()> not_ready;
+  std::function<std::optional<std::string>()> not_alive;
+  std::function<std::size_t()> queued;
+};
+
+/// /livez and /readyz.
+void add_health_routes(Router& router, const HealthChecks& health);
+/// /metrics.
+///
+/// text   what it says, in Prometheus' text exposition.
+void add_metrics_route(Router& router, std::function<std::string()> text);
 /// /livez, /readyz, /version, /openapi.yaml, and the page.
 ///
 /// page   folder of the built page; where it is absent, / says so.
-void add_service_routes(Router& router, Services services, const std::filesystem::path& page);
+void add_service_routes(Router& router, const HealthChecks& health, const std::filesystem::path& page);
 
 }  // namespace geosis::server::http

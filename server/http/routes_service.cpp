@@ -21,10 +21,16 @@ Reply text_reply(const char* type, std::string body) {
   return reply;
 }
 
-Reply ready(Services services) {
-  const auto listed = services.store.children("default/");
-  if (!listed) return error_reply({ErrorCode::unavailable, "the store does not answer: " + listed.error().message});
-  return json_reply(200, {{"ready", true}, {"queued", services.queue.depth()}});
+Reply alive(const HealthChecks& health) {
+  if (auto reason = health.not_alive()) return error_reply({ErrorCode::unavailable, *std::move(reason)});
+  return text_reply("text/plain", "ok\n");
+}
+
+Reply ready(const HealthChecks& health) {
+  std::string reasons;
+  for (const std::string& reason : health.not_ready()) reasons += (reasons.empty() ? "" : "; ") + reason;
+  if (!reasons.empty()) return error_reply({ErrorCode::unavailable, reasons});
+  return json_reply(200, {{"ready", true}, {"queued", health.queued()}});
 }
 
 Json version_document() {
@@ -68,9 +74,19 @@ std::map<std::string, std::string> read_page(const std::filesystem::path& folder
 
 }  // namespace
 
-void add_service_routes(Router& router, Services services, const std::filesystem::path& page) {
-  router.get("/livez", [](const Request&) { return text_reply("text/plain", "ok\n"); });
-  router.get("/readyz", [services](const Request&) { return ready(services); });
+void add_health_routes(Router& router, const HealthChecks& health) {
+  router.get("/livez", [health](const Request&) { return alive(health); });
+  router.get("/readyz", [health](const Request&) { return ready(health); });
+}
+
+void add_metrics_route(Router& router, std::function<std::string()> text) {
+  router.get("/metrics", [text = std::move(text)](const Request&) {
+    return text_reply("text/plain; version=0.0.4; charset=utf-8", text());
+  });
+}
+
+void add_service_routes(Router& router, const HealthChecks& health, const std::filesystem::path& page) {
+  add_health_routes(router, health);
   router.get("/version", [](const Request&) { return json_reply(200, version_document()); });
   router.get("/openapi.yaml", [](const Request&) { return text_reply("application/yaml", kOpenapiText); });
 

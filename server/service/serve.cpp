@@ -6,18 +6,26 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <thread>
 #include <utility>
 
-#include "server/app/extractions.h"
-#include "server/app/volumes.h"
+#include "server/auth/api_keys.h"
 #include "server/http/front.h"
 #include "server/http/routes.h"
 #include "server/jobs/job_queue.h"
 #include "server/jobs/memory_budget.h"
 #include "server/jobs/memory_limit.h"
+#include "server/metrics/metrics.h"
 #include "server/service/descriptor_limit.h"
+#include "server/service/health.h"
+#include "server/service/request_gate.h"
+#include "server/service/service_metrics.h"
+#include "server/service/tenants.h"
 #include "server/store/dir_store.h"
 
 namespace geosis::server {
@@ -34,13 +42,26 @@ bool is_loopback(std::string_view listen) {
   return listen.starts_with("127.") || listen.starts_with("localhost:") || listen.starts_with("[::1]:");
 }
 
-Result<void> check_exposure(const ServeOptions& options) {
-  if (!options.auth.empty() && options.auth != "none") {
-    return Error{ErrorCode::unsupported, "--auth " + options.auth + ": this version knows only none"};
+/// Who may call: the keys, or nothing where anybody may. What others reach must be said to be open.
+Result<std::optional<ApiKeys>> read_keys(const ServeOptions& options) {
+  const std::vector<std::string>& auth = options.auth;
+  if (auth.size() == 2 && auth[0] == "api_keys") {
+    auto keys = ApiKeys::read(auth[1]);
+    if (!keys) return std::move(keys).error();
+    return std::optional(*std::move(keys));
   }
-  if (is_loopback(options.listen) || options.auth == "none") return {};
-  return Error{ErrorCode::invalid_argument,
-               "--listen " + options.listen + ": not a loopback address; --auth none lets anybody in who reaches it"};
+  const bool is_none = auth.size() == 1 && auth[0] == "none";
+  if (!auth.empty() && !is_none) {
+    return Error{ErrorCode::invalid_argument, "--auth " + auth[0] + ": expected none, or api_keys and a file"};
+  }
+  for (const std::string& address : {options.listen, options.admin}) {
+    if (is_none || address.empty() || is_loopback(address)) continue;
+    return Error{ErrorCode::invalid_argument,
+                 address +
+                     ": not a loopback address; give --auth api_keys FILE (geosis key makes keys), or --auth none, "
+                     "which lets anybody in who reaches it"};
+  }
+  return std::optional<ApiKeys>();
 }
 
 /// SIGTERM and SIGINT come to whoever waits for them here, and to no other thread.
@@ -121,6 +142,38 @@ JobQueueOptions queue_options(const ServeOptions& options, MemoryBudget& memory)
           .budget = &memory};
 }
 
+http::Router routes_of(const Tenants& tenants, const http::HealthChecks& checks, const std::filesystem::path& page) {
+  http::Router router;
+  const http::ServicesOf services_of = [&tenants](const http::Request& request) {
+    return tenants.services(request.tenant);
+  };
+  http::add_volume_routes(router, services_of);
+  http::add_extraction_routes(router, services_of);
+  http::add_result_routes(router, services_of);
+  http::add_service_routes(router, checks, page);
+  return router;
+}
+
+/// The second door: metrics and probes. Null where there is none.
+Result<std::unique_ptr<http::Front>> start_admin(const ServeOptions& options, const http::HealthChecks& checks,
+                                                 std::function<std::string()> metrics, Log& log) {
+  if (options.admin.empty()) return std::unique_ptr<http::Front>();
+  http::Router router;
+  http::add_health_routes(router, checks);
+  http::add_metrics_route(router, std::move(metrics));
+  http::FrontOptions door;
+  door.listen = options.admin;
+  door.limits.connections = 64;
+  door.handler_threads = 2;
+  auto front = http::Front::start(door, std::move(router));
+  if (!front && options.admin == kDefaultAdmin) {
+    log.write(LogLevel::warning, "no metrics: another program has their port",
+              {{"address", options.admin}, {"problem", front.error().message}});
+    return std::unique_ptr<http::Front>();
+  }
+  return front;
+}
+
 std::string host_of(const std::string& listen) {
   return listen.substr(0, listen.rfind(':'));
 }
@@ -128,33 +181,44 @@ std::string host_of(const std::string& listen) {
 }  // namespace
 
 Result<void> serve(const ServeOptions& options) {
-  if (auto safe = check_exposure(options); !safe) return safe;
+  const auto keys = read_keys(options);
+  if (!keys) return keys.error();
   StopSignals signals;  // before the first thread starts, so that every thread inherits the mask
+  Log log(options.log_format, options.log_level);
+  Metrics metrics(service_families());
   const auto store = open_dir_store(options.store);
   if (!store) return store.error();
   const auto memory_bytes = memory_to_use(options);
   if (!memory_bytes) return memory_bytes.error();
   MemoryBudget memory(*memory_bytes);
-  Volumes volumes(**store, kTenant, options.threads);
   JobQueue queue(queue_options(options, memory));
-  Extractions extractions(**store, volumes, queue, kTenant, options.threads);
-
-  http::Router router;
+  const std::vector<std::string> names = *keys ? (*keys)->tenants() : std::vector<std::string>{kTenant};
   http::ReplyCache kept(kKeptBytes);
-  const http::Services services{**store, volumes, extractions, queue, memory, kept};
-  const http::ServicesOf services_of = [services](const http::Request&) { return services; };
-  http::add_volume_routes(router, services_of);
-  http::add_extraction_routes(router, services_of);
-  http::add_result_routes(router, services_of);
-  http::add_service_routes(router, services, options.page);
-  auto front = http::Front::start(front_options(options), std::move(router));
+  Tenants tenants(**store, queue, memory, kept, options.threads, names);
+  tenants.on_events(counted_events(metrics, log));
+  Health health(**store, queue);
+  RequestGate gate(*keys, log, metrics);
+
+  const http::HealthChecks checks = {[&] { return health.not_ready(); }, [&] { return health.not_alive(); },
+                                     [&] { return queue.depth(); }};
+  http::FrontOptions door = front_options(options);
+  door.middleware = &gate;
+  auto front = http::Front::start(door, routes_of(tenants, checks, options.page));
   if (!front) return std::move(front).error();
+  const auto text = [&, &open = **front] {
+    update_gauges(metrics, queue, memory);
+    metrics.set("geosis_http_connections", {}, static_cast<double>(open.connections()));
+    return metrics.text();
+  };
+  const auto admin = start_admin(options, checks, text, log);
+  if (!admin) return admin.error();
   std::printf("listening on %s://%s:%u\n", options.tls_certificate.empty() ? "http" : "https",
               host_of(options.listen).c_str(), unsigned{(*front)->port()});
   std::fflush(stdout);
 
   signals.wait();
   std::fprintf(stderr, "geosis: finishing what runs; a second signal stops at once\n");
+  health.set_draining();
   drain_and_stop(**front, queue, signals, options.drain);
   return {};
 }

@@ -7,16 +7,23 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "server/log/log.h"
 
 namespace geosis::server {
+
+/// Where metrics are. Another server of this machine may have it: then this one goes without, and says so.
+inline constexpr const char* kDefaultAdmin = "127.0.0.1:9464";
 
 /// How a server is set up: flags, environment and configuration file end up here.
 struct ServeOptions {
   std::string listen = "127.0.0.1:8080";
   std::string tls_certificate, tls_key;  ///< files in PEM; empty = plain HTTP
   std::filesystem::path store = "geosis-store";
-  std::filesystem::path page;  ///< folder of the built page
-  std::string auth;            ///< "none": anybody may call; "" allows loopback alone
+  std::filesystem::path page;         ///< folder of the built page
+  std::string admin = kDefaultAdmin;  ///< metrics and probes; empty = nowhere
+  std::vector<std::string> auth;      ///< none: anybody may call; api_keys FILE; empty allows loopback alone
+  LogFormat log_format = LogFormat::text;
+  LogLevel log_level = LogLevel::info;
   std::vector<std::string> cors_origins;
   std::uint64_t max_body_bytes = std::uint64_t{1} << 40;
   std::size_t connections = 4096;           ///< at one time; fewer where the system allows fewer descriptors

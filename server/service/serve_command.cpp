@@ -1,6 +1,7 @@
 #include "server/service/serve_command.h"
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -20,6 +21,16 @@ struct ServeArguments {
 /// Of the processors for one extraction: three quarters, so that others go on beside it.
 int share_of_threads(int processors) {
   return std::max((3 * processors + 3) / 4, 1);
+}
+
+void add_log_flags(CLI::App& command, ServeOptions& options) {
+  const std::map<std::string, LogFormat> formats = {{"text", LogFormat::text}, {"json", LogFormat::json}};
+  const std::map<std::string, LogLevel> levels = {
+      {"debug", LogLevel::debug}, {"info", LogLevel::info}, {"warning", LogLevel::warning}, {"error", LogLevel::error}};
+  command.add_option("--log-format", options.log_format, "of the lines on stderr: text, json")
+      ->transform(CLI::CheckedTransformer(formats));
+  command.add_option("--log-level", options.log_level, "least level of lines: debug, info, warning, error")
+      ->transform(CLI::CheckedTransformer(levels));
 }
 
 }  // namespace
@@ -55,7 +66,11 @@ Command add_serve_command(CLI::App& app) {
       ->check(CLI::Range(1, 3600));
   flag("--idle-seconds", arguments->idle_seconds, "that a connection may stay open between requests")
       ->check(CLI::Range(1, 3600));
-  flag("--auth", options.auth, "none = anybody may call; needed for addresses other than loopback")->type_name("HOW");
+  command.add_option("--auth", options.auth, "none = anybody may call; api_keys FILE = whose key the file has")
+      ->type_name("none | api_keys FILE")
+      ->expected(1, 2);
+  flag("--admin", options.admin, "HOST:PORT of /metrics, /livez and /readyz; empty = nowhere")->type_name("ADDRESS");
+  add_log_flags(command, options);
   flag("--cors-origin", options.cors_origins, "origins whose pages may call")->type_name("ORIGIN ...");
   flag("--page", arguments->page, "folder of the built page")->type_name("DIR");
   flag("--drain-seconds", arguments->drain_seconds, "how long running answers may take after SIGTERM")

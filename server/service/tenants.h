@@ -1,0 +1,38 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "server/app/extractions.h"
+#include "server/app/volumes.h"
+#include "server/http/services.h"
+
+namespace geosis::server {
+
+/// The use cases of each tenant, on one store and one queue. The queue must have stopped before this goes.
+class Tenants {
+ public:
+  Tenants(BlobStore& store, JobQueue& queue, MemoryBudget& memory, http::ReplyCache& kept, int threads,
+          const std::vector<std::string>& names);
+
+  /// name   one of those given.
+  http::Services services(const std::string& name) const;
+  /// Tells of every extraction, whoever's it is. Set before the first request.
+  void on_events(const ExtractionEvents& events);
+
+ private:
+  struct Tenant {
+    std::unique_ptr<Volumes> volumes;
+    std::unique_ptr<Extractions> extractions;
+  };
+
+  BlobStore& store_;
+  JobQueue& queue_;
+  MemoryBudget& memory_;
+  http::ReplyCache& kept_;
+  std::map<std::string, Tenant> tenants_;
+};
+
+}  // namespace geosis::server

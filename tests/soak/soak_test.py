@@ -43,10 +43,13 @@ def volume(side, seed):
     return samples.tobytes()
 
 
+BASES = [volume(SIDE, seed) for seed in range(4)]
+
+
 class Server:
     def __init__(self, store):
         self.process = subprocess.Popen(
-            [GEOSIS, "serve", "--listen", "127.0.0.1:0", "--store", store, "--queued", "64"],
+            [GEOSIS, "serve", "--listen", "127.0.0.1:0", "--store", store, "--queued", "64", "--admin", "", "--log-level", "warning"],
             stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         self.address = urllib.parse.urlsplit(self.process.stdout.readline().split()[-1]).netloc
 
@@ -115,7 +118,8 @@ class Client(threading.Thread):
         return json.loads(data) if data else None
 
     def upload_and_delete(self):
-        data = volume(SIDE, self.random.randrange(1 << 30))
+        data = bytearray(self.random.choice(BASES))
+        data[:8] = array.array("f", [self.random.random(), self.random.random()]).tobytes()  # a volume of its own
         answer = self.call("POST", f"/v1/volumes?format=raw&dims={SIDE},{SIDE},{SIDE}", data, (200, 201),
                            Content_Type="application/octet-stream")
         if answer is None:

@@ -1,6 +1,8 @@
 #include "engine/base/task_board.h"
 
+#include <algorithm>
 #include <condition_variable>
+#include <deque>
 #include <exception>
 #include <functional>
 #include <map>
@@ -11,15 +13,6 @@
 #include <tbb/task_arena.h>
 
 namespace geosis {
-namespace {
-
-/// Where all boards of the process call for help. Its priority is low: workers come when no parallel_for needs them.
-tbb::task_arena& spare_threads() {
-  static tbb::task_arena arena(tbb::task_arena::automatic, 1, tbb::task_arena::priority::low);
-  return arena;
-}
-
-}  // namespace
 
 struct TaskBoard::State {
   explicit State(int most_helpers) : helpers(most_helpers) {}
@@ -60,6 +53,54 @@ struct TaskBoard::State {
   }
 };
 
+/// Where all boards of the process call for help. The arena's priority is low: workers come when no parallel_for needs
+/// them, and take the oldest call. Nothing of a board stays behind here when it is gone.
+class TaskBoard::SpareThreads {
+ public:
+  /// Never destroyed: workers may come when the process already ends.
+  static SpareThreads& of_process() {
+    static auto& threads = *new SpareThreads;
+    return threads;
+  }
+
+  void call(const std::shared_ptr<State>& state) {
+    {
+      const std::lock_guard lock(mutex_);
+      calls_.push_back(state);
+    }
+    try {
+      arena_.enqueue([] { of_process().answer(); });
+    } catch (const std::bad_alloc&) {
+      const std::lock_guard lock(mutex_);
+      const auto unanswered = std::ranges::find(calls_, state);
+      if (unanswered == calls_.end()) return;
+      calls_.erase(unanswered);
+      throw;
+    }
+  }
+
+  void forget_calls(const std::shared_ptr<State>& state) {
+    const std::lock_guard lock(mutex_);
+    std::erase(calls_, state);
+  }
+
+ private:
+  void answer() {
+    std::shared_ptr<State> state;
+    {
+      const std::lock_guard lock(mutex_);
+      if (calls_.empty()) return;
+      state = std::move(calls_.front());
+      calls_.pop_front();
+    }
+    help(state);
+  }
+
+  std::mutex mutex_;
+  std::deque<std::shared_ptr<State>> calls_;
+  tbb::task_arena arena_{tbb::task_arena::automatic, 1, tbb::task_arena::priority::low};
+};
+
 TaskBoard::TaskBoard(int helpers) : state_(std::make_shared<State>(helpers)) {}
 
 TaskBoard::~TaskBoard() {
@@ -68,6 +109,8 @@ TaskBoard::~TaskBoard() {
   state_->closed = true;
   forgotten.swap(state_->waiting);
   state_->changed.wait(lock, [&] { return state_->running == 0; });
+  lock.unlock();
+  SpareThreads::of_process().forget_calls(state_);
 }
 
 void TaskBoard::add(int urgency, std::function<void()> task) {
@@ -107,7 +150,7 @@ void TaskBoard::work_until(int least_urgency, const std::function<bool()>& done)
 
 void TaskBoard::call_helper(const std::shared_ptr<State>& state) {
   try {
-    spare_threads().enqueue([state] { help(state); });
+    SpareThreads::of_process().call(state);
   } catch (const std::bad_alloc&) {  // then there is a helper less
     const std::lock_guard lock(state->mutex);
     --state->called;

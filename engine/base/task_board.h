@@ -31,10 +31,11 @@ class TaskBoard {
 
  private:
   struct State;
+  class SpareThreads;
   static void call_helper(const std::shared_ptr<State>& state);
   static void help(const std::shared_ptr<State>& state);
 
-  std::shared_ptr<State> state_;  // helpers that were called and come late outlive the board
+  std::shared_ptr<State> state_;  // helpers that find nothing to do may let go of it after the board is gone
 };
 
 }  // namespace geosis

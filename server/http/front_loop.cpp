@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::uint64_t kListenerKey = 0, kMailboxKey = 1, kFirstConnection = 2;
 constexpr std::chrono::milliseconds kTick{100};
+constexpr int kAcceptedAtOnce = 64;  // those who are here already have their turn in between
+constexpr int kBacklog = 4096;
 
 std::string full_answer() {
   const Reply reply = refusal_reply({503, "too many connections are open"});
@@ -60,7 +62,7 @@ void FrontLoop::stop() {
 }
 
 void FrontLoop::on_event(const epoll_event& event) {
-  if (event.data.u64 == kListenerKey) return accept_all();
+  if (event.data.u64 == kListenerKey) return accept_some(kAcceptedAtOnce);
   if (event.data.u64 == kMailboxKey) return read_letters();
   const auto found = connections_.find(event.data.u64);
   if (found == connections_.end()) return;
@@ -68,8 +70,8 @@ void FrontLoop::on_event(const epoll_event& event) {
   settle(*found->second);
 }
 
-void FrontLoop::accept_all() {
-  while (listener_.is_open()) {
+void FrontLoop::accept_some(int most) {
+  for (int count = 0; count < most && listener_.is_open(); ++count) {
     Listener::Accepted accepted = listener_.accept();
     switch (accepted.outcome) {
       case Listener::Accepted::Outcome::connection:
@@ -144,7 +146,7 @@ void FrontLoop::tick() {
 
 void FrontLoop::drain_some() {
   if (listener_.is_open()) {
-    accept_all();  // who connected before is still served
+    accept_some(kBacklog);  // who connected before is still served
     poller_.forget(listener_.descriptor());
     listener_.close();
   }
@@ -211,9 +213,13 @@ Letter FrontLoop::letter_with_answer(std::uint64_t connection, const Request& re
 
 bool FrontLoop::handle(Connection& connection, Router::Resolved resolved) {
   const ReplyForm form{.is_head = resolved.request.method == "HEAD", .closes = connection.closes()};
-  return handlers_.submit([this, id = connection.id(), form, resolved = std::move(resolved)] {
-    mailbox_->post(letter_with_answer(id, resolved.request, form, [&] { return dispatcher_.run(resolved); }));
-  });
+  const bool reads =
+      resolved.request.method != "POST" && resolved.request.method != "PATCH" && resolved.request.method != "DELETE";
+  return handlers_.submit(
+      reads ? HandlerPool::Lane::reading : HandlerPool::Lane::writing,
+      [this, id = connection.id(), form, resolved = std::move(resolved)] {
+        mailbox_->post(letter_with_answer(id, resolved.request, form, [&] { return dispatcher_.run(resolved); }));
+      });
 }
 
 bool FrontLoop::upload(Connection& connection, Head head, Router::Resolved resolved, std::string already) {
@@ -230,10 +236,11 @@ bool FrontLoop::upload(Connection& connection, Head head, Router::Resolved resol
 }
 
 void FrontLoop::resume(Connection& connection, std::unique_ptr<Suspended> suspended) {
-  handlers_.resume([this, id = connection.id(), kept = std::shared_ptr<Suspended>(std::move(suspended))] {
-    const auto run = [&] { return dispatcher_.resume(kept->request, *kept->pending); };
-    mailbox_->post(letter_with_answer(id, kept->request, kept->form, run));
-  });
+  handlers_.resume(HandlerPool::Lane::reading,
+                   [this, id = connection.id(), kept = std::shared_ptr<Suspended>(std::move(suspended))] {
+                     const auto run = [&] { return dispatcher_.resume(kept->request, *kept->pending); };
+                     mailbox_->post(letter_with_answer(id, kept->request, kept->form, run));
+                   });
 }
 
 std::function<void()> FrontLoop::bell_of(const Connection& connection) {

@@ -46,7 +46,7 @@ class FrontLoop final : private ConnectionOwner {
   std::function<void()> bell_of(const Connection& connection) override;
 
   void on_event(const epoll_event& event);
-  void accept_all();
+  void accept_some(int most);
   void admit(Listener::Accepted accepted);
   bool has_room_for(const std::string& peer) const;
   /// Ends the connection that has been idle longest, of this peer or of any.

@@ -6,7 +6,8 @@
 
 namespace geosis::server::http {
 
-HandlerPool::HandlerPool(std::size_t threads, std::size_t most_queued) : most_queued_(most_queued) {
+HandlerPool::HandlerPool(std::size_t threads, std::size_t most_queued)
+    : most_queued_(most_queued), least_writers_(threads / 4), most_writers_(threads - threads / 4) {
   try {
     for (std::size_t i = 0; i < threads; ++i) threads_.emplace_back([this] { run(); });
   } catch (const std::system_error&) {  // a thread that runs must not be destroyed
@@ -15,19 +16,19 @@ HandlerPool::HandlerPool(std::size_t threads, std::size_t most_queued) : most_qu
   }
 }
 
-bool HandlerPool::submit(std::function<void()> work) {
-  return add(std::move(work), most_queued_);
+bool HandlerPool::submit(Lane lane, std::function<void()> work) {
+  return add(lane, std::move(work), most_queued_);
 }
 
-bool HandlerPool::resume(std::function<void()> work) {
-  return add(std::move(work), SIZE_MAX);
+bool HandlerPool::resume(Lane lane, std::function<void()> work) {
+  return add(lane, std::move(work), SIZE_MAX);
 }
 
-bool HandlerPool::add(std::function<void()> work, std::size_t most_queued) {
+bool HandlerPool::add(Lane lane, std::function<void()> work, std::size_t most_queued) {
   {
     const std::lock_guard lock(mutex_);
-    if (is_stopping_ || queue_.size() >= most_queued) return false;
-    queue_.push_back(std::move(work));
+    if (is_stopping_ || queue(lane).size() >= most_queued) return false;
+    queue(lane).push_back(std::move(work));
   }
   changed_.notify_one();
   return true;
@@ -41,19 +42,30 @@ void HandlerPool::stop() {
   changed_.notify_all();
   for (std::thread& thread : threads_) thread.join();
   threads_.clear();
-  queue_.clear();
+  for (Queue& queue : queues_) queue.clear();
+}
+
+std::optional<HandlerPool::Lane> HandlerPool::next_lane() const {
+  const bool has_writing = !queue(Lane::writing).empty();
+  if (has_writing && writers_ < least_writers_) return Lane::writing;
+  if (!queue(Lane::reading).empty()) return Lane::reading;
+  if (has_writing && writers_ < most_writers_) return Lane::writing;
+  return std::nullopt;
 }
 
 void HandlerPool::run() {
   std::unique_lock lock(mutex_);
   for (;;) {
-    changed_.wait(lock, [this] { return is_stopping_ || !queue_.empty(); });
+    std::optional<Lane> lane;
+    changed_.wait(lock, [&] { return is_stopping_ || (lane = next_lane()); });
     if (is_stopping_) return;
-    const auto work = std::exchange(queue_.front(), {});
-    queue_.pop_front();
+    const auto work = std::exchange(queue(*lane).front(), {});
+    queue(*lane).pop_front();
+    if (*lane == Lane::writing) ++writers_;
     lock.unlock();
     work();
     lock.lock();
+    if (*lane == Lane::writing) --writers_;  // and this thread looks again
   }
 }
 

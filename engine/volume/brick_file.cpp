@@ -32,7 +32,7 @@ std::unique_ptr<BrickedVolume> make_bricked_volume(GridShape shape, std::span<co
     for (std::int32_t j = 0; j < shape.crosslines; ++j, ++trace)
       store_trace(*image, plan, i, j, samples.subspan(trace * length, length));
   NoProgress unwatched;
-  index_file(*image, plan, 1, unwatched);
+  index_file(*image, plan, {}, 1, unwatched);
   return std::make_unique<BrickImage>(image, std::span<const std::byte>(*image), plan);
 }
 

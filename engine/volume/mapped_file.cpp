@@ -59,6 +59,11 @@ Result<std::unique_ptr<MappedFile>> MappedFile::create_unnamed(std::uint64_t byt
   std::error_code no_folder;
   const std::filesystem::path folder = std::filesystem::temp_directory_path(no_folder);
   if (no_folder) return Error{ErrorCode::unavailable, "no folder for temporary files: " + no_folder.message()};
+  return create_unnamed(bytes, folder);
+}
+
+Result<std::unique_ptr<MappedFile>> MappedFile::create_unnamed(std::uint64_t bytes,
+                                                               const std::filesystem::path& folder) {
   const int descriptor = open_unnamed(folder);
   if (descriptor < 0) return failed("cannot create a temporary file in", folder, errno);
   std::unique_ptr<MappedFile> file(new MappedFile(descriptor));
@@ -87,6 +92,11 @@ Result<void> MappedFile::map(std::uint64_t bytes, bool writable, const std::file
   data_ = static_cast<std::byte*>(data);
   size_ = bytes;
   return {};
+}
+
+// Advice: where it fails or is not known, sync() has more to do.
+void MappedFile::start_writing(std::uint64_t offset, std::uint64_t bytes) const {
+  ::sync_file_range(descriptor_, static_cast<off_t>(offset), static_cast<off_t>(bytes), SYNC_FILE_RANGE_WRITE);
 }
 
 Result<void> MappedFile::sync() const {

@@ -20,6 +20,8 @@ class MappedFile {
   static Result<std::unique_ptr<MappedFile>> create(const std::filesystem::path& path, std::uint64_t bytes);
   /// The same without a name, in the system's folder for temporary files.
   static Result<std::unique_ptr<MappedFile>> create_unnamed(std::uint64_t bytes);
+  /// The same in a folder of choice.
+  static Result<std::unique_ptr<MappedFile>> create_unnamed(std::uint64_t bytes, const std::filesystem::path& folder);
 
   MappedFile(const MappedFile&) = delete;
   MappedFile& operator=(const MappedFile&) = delete;
@@ -27,6 +29,8 @@ class MappedFile {
 
   std::span<const std::byte> bytes() const { return {data_, size_}; }
   std::span<std::byte> writable() { return {data_, size_}; }
+  /// Begins to write these bytes to the disk and does not wait for it; sync() tells whether that came to a good end.
+  void start_writing(std::uint64_t offset, std::uint64_t bytes) const;
   /// Returns when all bytes are on the disk. errors: unavailable.
   Result<void> sync() const;
 

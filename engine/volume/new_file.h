@@ -25,6 +25,8 @@ class NewFile {
   ~NewFile();
 
   std::span<std::byte> writable() { return file_->writable(); }
+  /// See MappedFile.
+  void start_writing(std::uint64_t offset, std::uint64_t bytes) const { file_->start_writing(offset, bytes); }
   /// Flushes the file, gives it its name and flushes the folder; nothing of this for an unnamed one.
   /// errors: unavailable.
   Result<std::unique_ptr<MappedFile>> publish() &&;

@@ -3,10 +3,13 @@
 #include <cstring>
 #include <utility>
 
+#include "server/app/arriving_file.h"
 #include "server/documents/import_options.h"
 #include "server/documents/slice_png.h"
 #include "server/documents/volume_document.h"
+#include "server/http/content_digest.h"
 #include "server/http/error_reply.h"
+#include "server/http/form_reader.h"
 #include "server/http/json_reply.h"
 #include "server/http/parameters.h"
 #include "server/http/pending_replies.h"
@@ -19,10 +22,49 @@ namespace {
 
 constexpr std::int64_t kLargestPage = 1000;
 
+/// Size of the file that the body is, when the file can be imported while it arrives.
+std::optional<std::uint64_t> arriving_bytes(const Request& request, const ImportOptions& options) {
+  if (form_boundary(header(request, "content-type"))) return std::nullopt;
+  const auto expected = raw_file_bytes(options);
+  return expected ? request.content_length.value_or(*expected) : expected;
+}
+
+Reply added_reply(const Result<UploadResult>& added, const std::vector<GridCandidate>& candidates) {
+  if (!added) return upload_refusal(added.error(), candidates);
+  Reply reply = json_reply(added->is_new ? 201 : 200, added->document);
+  reply.headers.emplace_back("Location", "/v1/volumes/" + added->document.at("id").get<std::string>());
+  return reply;
+}
+
+/// Imports the body as it arrives: it is written once, as bricks.
+Reply import_arriving(Services services, const Request& request, BodyReader& wire, std::uint64_t bytes,
+                      UploadOptions options) {
+  auto stated = stated_digests(request);
+  if (!stated) return error_reply(stated.error());
+  DigestedBody body(wire, *std::move(stated));
+  const ArrivingFile file(bytes, [&](std::span<std::byte> into) { return body.read(into); });
+  options.confirm = [&]() -> Result<void> {
+    std::byte more{};
+    const auto count = body.read(std::span(&more, 1));
+    if (!count) return count.error();
+    if (*count > 0) {
+      return Error{ErrorCode::malformed_input,
+                   "raw: more than the " + std::to_string(bytes) + " bytes that dims and dtype make"};
+    }
+    return body.check();
+  };
+  std::vector<GridCandidate> candidates;
+  NoProgress unwatched;
+  return added_reply(services.volumes.add(file, options, unwatched, candidates), candidates);
+}
+
 Reply upload(Services services, const Request& request, BodyReader& body) {
   auto options = upload_options(request.query, {"name"});
   if (!options) return error_reply(options.error());
   options->name = parameter(request, "name").value_or("");
+  if (const auto bytes = arriving_bytes(request, options->import)) {
+    return import_arriving(services, request, body, *bytes, *std::move(options));
+  }
 
   const auto memory = memory_to_import(services);
   if (!memory) return error_reply(memory.error());
@@ -34,11 +76,7 @@ Reply upload(Services services, const Request& request, BodyReader& body) {
   if (!file) return error_reply(file.error());
   std::vector<GridCandidate> candidates;
   NoProgress unwatched;
-  const auto added = services.volumes.add(**file, *options, unwatched, candidates);
-  if (!added) return upload_refusal(added.error(), candidates);
-  Reply reply = json_reply(added->is_new ? 201 : 200, added->document);
-  reply.headers.emplace_back("Location", "/v1/volumes/" + added->document.at("id").get<std::string>());
-  return reply;
+  return added_reply(services.volumes.add(**file, *options, unwatched, candidates), candidates);
 }
 
 Reply list(Services services, const Request& request) {

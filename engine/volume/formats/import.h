@@ -84,9 +84,13 @@ struct ImportedVolume {
   VolumeDescription description;
 };
 
+/// Bytes of a raw file with these options; nullopt: not a raw file, or not known, as dims are missing or make no sense.
+std::optional<std::uint64_t> raw_file_bytes(const ImportOptions& options);
+
 /// Reads a survey into a brick file and opens it.
 ///
-/// source       read in place, piece by piece; memory stays flat whatever its size.
+/// source       read in place, piece by piece; memory stays flat whatever its size. A raw file (raw_file_bytes) is read
+///              once, in order, by the calling thread alone: it may still arrive.
 /// brick_file   where the brick file goes; std::nullopt = an unnamed temporary file that vanishes with the volume.
 ///              A failed import leaves nothing behind.
 /// missing      a position of the survey without any valid sample counts as a missing trace. Infinite samples, and

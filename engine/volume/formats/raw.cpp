@@ -1,7 +1,5 @@
 #include "engine/volume/formats/raw.h"
 
-#include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -10,25 +8,14 @@
 #include "engine/base/parallel.h"
 #include "engine/volume/brick_layout.h"
 #include "engine/volume/brick_writer.h"
+#include "engine/volume/formats/raw_layout.h"
+#include "engine/volume/formats/raw_slices.h"
 #include "engine/volume/formats/record_stream.h"
 #include "engine/volume/formats/sample_codec.h"
 #include "engine/volume/formats/sample_tally.h"
 
 namespace geosis {
 namespace {
-
-constexpr std::uint64_t kTileBytes = 8 << 20;
-
-struct RawLayout {
-  GridShape shape;
-  SampleCode code = SampleCode::ieee32;
-  bool big_endian = false;
-  NullValue null;
-
-  std::uint64_t bytes_of(std::int64_t samples) const {
-    return static_cast<std::uint64_t>(samples) * bytes_per_sample(code);
-  }
-};
 
 SampleCode code_of(SampleType type) {
   switch (type) {
@@ -77,7 +64,6 @@ Result<RawLayout> read_layout(const ByteSource& source, const ImportOptions& opt
 
   const SampleCode code = code_of(options.dtype);
   const RawLayout layout{shape, code, options.byte_order == ByteOrder::big, NullValue(options.null_value, code)};
-  // Each axis is below 2^17, so that the product of all and 8 bytes is below 2^54.
   if (const std::uint64_t expected = layout.bytes_of(shape.count()); expected != source.size())
     return Error{ErrorCode::malformed_input, "raw: " + std::to_string(source.size()) + " bytes; expected " +
                                                  std::to_string(expected) + " for " + dims + " samples of " +
@@ -95,103 +81,48 @@ void put_trace(const RawLayout& layout, std::int64_t trace, std::span<const std:
              static_cast<std::int32_t>(trace % layout.shape.crosslines), 0, samples);
 }
 
+// Finishes the bricks of each layer of inlines as soon as its last inline is there.
+class LayerFinisher {
+ public:
+  explicit LayerFinisher(BrickWriter& writer) : writer_(writer) {}
+
+  void after(std::int64_t inlines) {
+    const BrickLayout& layout = writer_.layout();
+    const GridShape grid = layout.grid();
+    while (next_ < grid.inlines &&
+           layout.first_node({next_, 0, 0}).i + layout.extent({next_, 0, 0}).inlines <= inlines) {
+      const std::size_t bricks = static_cast<std::size_t>(grid.crosslines) * static_cast<std::size_t>(grid.samples);
+      const std::size_t first = static_cast<std::size_t>(next_) * bricks;
+      parallel_for(bricks, default_threads(), [&](std::size_t brick) { writer_.complete(first + brick); });
+      writer_.start_writing(first, bricks);
+      ++next_;
+    }
+  }
+
+ private:
+  BrickWriter& writer_;
+  std::int32_t next_ = 0;
+};
+
 // Sample fastest: the file is trace after trace. Returns the digest.
 Result<std::string> move_traces(const ByteSource& source, const RawLayout& layout, BrickWriter& writer,
                                 SampleTally& tally, Progress& progress) {
   const std::uint64_t trace_bytes = layout.bytes_of(layout.shape.samples);
-  const auto traces =
-      static_cast<std::uint64_t>(layout.shape.inlines) * static_cast<std::uint64_t>(layout.shape.crosslines);
-  const RecordVisitor visitor{[](const RecordBatch&) {},
-                              [&](const RecordBatch& batch) {
-                                std::vector<float> samples(static_cast<std::size_t>(layout.shape.samples));
-                                for (std::uint64_t t = 0; t < batch.count; ++t)
-                                  put_trace(layout, static_cast<std::int64_t>(batch.first + t),
-                                            batch.bytes.subspan(t * trace_bytes, trace_bytes), samples, writer, tally);
-                              }};
+  const auto crosslines = static_cast<std::uint64_t>(layout.shape.crosslines);
+  LayerFinisher finisher(writer);
+  const RecordVisitor visitor{
+      .in_order = [](const RecordBatch&) {},
+      .at_once =
+          [&](const RecordBatch& batch) {
+            std::vector<float> samples(static_cast<std::size_t>(layout.shape.samples));
+            for (std::uint64_t t = 0; t < batch.count; ++t)
+              put_trace(layout, static_cast<std::int64_t>(batch.first + t),
+                        batch.bytes.subspan(t * trace_bytes, trace_bytes), samples, writer, tally);
+          },
+      .after = [&](std::uint64_t traces) { finisher.after(static_cast<std::int64_t>(traces / crosslines)); }};
+  const auto traces = static_cast<std::uint64_t>(layout.shape.inlines) * crosslines;
   return stream_records(source, {0, trace_bytes, traces}, visitor, default_threads(), progress);
 }
-
-/// Part of a file whose inline index is fastest: all inlines of some crosslines of some samples.
-struct Tile {
-  std::int32_t j0 = 0, crosslines = 0, k0 = 0, samples = 0;
-};
-
-/// Turns a file whose inline index is fastest, tile by tile.
-class TileMover {
- public:
-  TileMover(const ByteSource& source, const RawLayout& layout, BrickWriter& writer)
-      : source_(source),
-        layout_(layout),
-        writer_(writer),
-        missing_in_trace_(static_cast<std::size_t>(layout.shape.inlines) *
-                          static_cast<std::size_t>(layout.shape.crosslines)) {}
-
-  Result<void> move_all(SampleTally& tally, Progress& progress) {
-    const GridShape& shape = layout_.shape;
-    const Tile whole = tile_size();
-    for (std::int32_t k = 0; k < shape.samples; k += whole.samples) {
-      for (std::int32_t j = 0; j < shape.crosslines; j += whole.crosslines) {
-        if (progress.cancelled()) return Error{ErrorCode::cancelled, "cancelled"};
-        const Tile tile{j, std::min(whole.crosslines, shape.crosslines - j), k,
-                        std::min(whole.samples, shape.samples - k)};
-        if (auto moved = move(tile, tally); !moved) return moved;
-      }
-      progress.report("import", static_cast<double>(k) / static_cast<double>(shape.samples));
-    }
-    for (const std::int32_t missing : missing_in_trace_) tally.add_trace(shape.samples, missing);
-    return {};
-  }
-
- private:
-  // As many samples as a brick has, as many crosslines as fit: long reads, and whole rows of bricks to write.
-  Tile tile_size() const {
-    const std::uint64_t line = layout_.bytes_of(layout_.shape.inlines);
-    const auto lines = static_cast<std::int32_t>(std::clamp<std::uint64_t>(kTileBytes / line, 1, 1u << 30));
-    const std::int32_t samples = std::min({kBrickCells, layout_.shape.samples, lines});
-    return {0, std::clamp(lines / samples, 1, layout_.shape.crosslines), 0, samples};
-  }
-
-  Result<void> move(const Tile& tile, SampleTally& tally) {
-    const std::int64_t slab = std::int64_t{layout_.shape.inlines} * tile.crosslines;
-    bytes_.resize(layout_.bytes_of(slab * tile.samples));
-    for (std::int32_t k = 0; k < tile.samples; ++k) {
-      const std::int64_t first =
-          (std::int64_t{tile.k0 + k} * layout_.shape.crosslines + tile.j0) * layout_.shape.inlines;
-      const auto into = std::span(bytes_).subspan(layout_.bytes_of(slab * k), layout_.bytes_of(slab));
-      if (auto read = source_.read_at(layout_.bytes_of(first), into); !read) return read;
-    }
-    samples_.resize(static_cast<std::size_t>(slab) * static_cast<std::size_t>(tile.samples));
-    decode_samples(layout_.code, layout_.big_endian, bytes_, samples_);
-    tally.add_infinite(layout_.null.clean(samples_).infinite);
-    parallel_for(static_cast<std::size_t>(tile.crosslines), default_threads(),
-                 [&](std::size_t j) { put_crossline(tile, static_cast<std::int32_t>(j)); });
-    return {};
-  }
-
-  // Gathers the part of every trace of one crossline and writes it.
-  void put_crossline(const Tile& tile, std::int32_t j) {
-    const std::int64_t slab = std::int64_t{layout_.shape.inlines} * tile.crosslines;
-    std::vector<float> part(static_cast<std::size_t>(tile.samples));
-    for (std::int32_t i = 0; i < layout_.shape.inlines; ++i) {
-      const float* from = samples_.data() + std::int64_t{j} * layout_.shape.inlines + i;
-      std::int32_t missing = 0;
-      for (std::size_t k = 0; k < part.size(); ++k) {
-        part[k] = from[static_cast<std::int64_t>(k) * slab];
-        missing += part[k] != part[k];
-      }
-      missing_in_trace_[static_cast<std::size_t>(i) * static_cast<std::size_t>(layout_.shape.crosslines) +
-                        static_cast<std::size_t>(tile.j0 + j)] += missing;
-      writer_.put(i, tile.j0 + j, tile.k0, part);
-    }
-  }
-
-  const ByteSource& source_;
-  const RawLayout& layout_;
-  BrickWriter& writer_;
-  std::vector<std::byte> bytes_;
-  std::vector<float> samples_;
-  std::vector<std::int32_t> missing_in_trace_;
-};
 
 VolumeDescription describe_raw(const RawLayout& layout, const ImportOptions& options) {
   VolumeDescription d;
@@ -210,6 +141,14 @@ VolumeDescription describe_raw(const RawLayout& layout, const ImportOptions& opt
 
 }  // namespace
 
+std::optional<std::uint64_t> raw_file_bytes(const ImportOptions& options) {
+  const bool is_raw =
+      options.format == FileFormat::raw || (options.format == FileFormat::automatic && options.dims.has_value());
+  if (!is_raw || !options.dims || !check_axes(*options.dims)) return std::nullopt;
+  // Each axis is below 2^17, so that the product of all and 8 bytes is below 2^54.
+  return static_cast<std::uint64_t>(options.dims->count()) * bytes_per_sample(code_of(options.dtype));
+}
+
 Result<ImportedVolume> import_raw(const ByteSource& source, const ImportOptions& options,
                                   const std::optional<std::filesystem::path>& brick_file, Progress& progress) {
   const auto layout = read_layout(source, options);
@@ -218,14 +157,9 @@ Result<ImportedVolume> import_raw(const ByteSource& source, const ImportOptions&
   if (!writer) return std::move(writer).error();
 
   SampleTally tally;
-  Result<std::string> digest = std::string();
-  if (options.order == RawOrder::sample_fastest) {
-    digest = move_traces(source, *layout, *writer, tally, progress);
-  } else {
-    if (auto moved = TileMover(source, *layout, *writer).move_all(tally, progress); !moved)
-      return std::move(moved).error();
-    digest = digest_of(source, progress);
-  }
+  auto digest = options.order == RawOrder::sample_fastest
+                    ? move_traces(source, *layout, *writer, tally, progress)
+                    : move_slices(source, *layout, brick_file, *writer, tally, progress);
   if (!digest) return std::move(digest).error();
   auto samples = std::move(*writer).finish(default_threads(), progress);
   if (!samples) return std::move(samples).error();

@@ -1,6 +1,7 @@
 #include "engine/volume/formats/record_stream.h"
 
 #include <algorithm>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -67,18 +68,21 @@ class RecordStream {
     return {batch.first + begin, count, batch.bytes.subspan(begin * records_.bytes, count * records_.bytes)};
   }
 
+  // Reading may wait for a network: no thread that computes does it.
   Result<RecordBatch> work_and_read_ahead(const RecordBatch& batch, std::vector<std::byte>& buffer, Sha256& digest) {
-    Result<RecordBatch> next = RecordBatch{};
+    const std::jthread worker([&] { work(batch, digest); });
+    return read(batch.first + batch.count, buffer);
+  }
+
+  void work(const RecordBatch& batch, Sha256& digest) const {
     const std::uint64_t pieces = (batch.count + per_piece_ - 1) / per_piece_;
-    parallel_for(pieces + 2, threads_, [&](std::size_t task) {
+    parallel_for(pieces + 1, threads_, [&](std::size_t task) {
       if (task == 0)
         digest.update(batch.bytes);
-      else if (task == 1)
-        next = read(batch.first + batch.count, buffer);
       else
-        visitor_.at_once(piece_of(batch, task - 2));
+        visitor_.at_once(piece_of(batch, task - 1));
     });
-    return next;
+    if (visitor_.after) visitor_.after(batch.first + batch.count);
   }
 
   const ByteSource& source_;
@@ -99,12 +103,6 @@ Result<std::string> stream_records(const ByteSource& source, const Records& reco
     return std::move(done).error();
   const std::uint64_t end = records.begin + records.count * records.bytes;
   if (auto done = digest_range(source, end, source.size(), digest, progress); !done) return std::move(done).error();
-  return std::move(digest).hex();
-}
-
-Result<std::string> digest_of(const ByteSource& source, Progress& progress) {
-  Sha256 digest;
-  if (auto done = digest_range(source, 0, source.size(), digest, progress); !done) return std::move(done).error();
   return std::move(digest).hex();
 }
 

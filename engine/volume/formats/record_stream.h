@@ -27,17 +27,17 @@ struct RecordBatch {
 struct RecordVisitor {
   std::function<void(const RecordBatch&)> in_order;  ///< every batch, one after the other
   std::function<void(const RecordBatch&)> at_once;   ///< every record once, in small batches from several threads
+  /// After each batch: how many records, from the first on, are done with. May be empty.
+  std::function<void(std::uint64_t)> after = {};
 };
 
-/// Reads a file once from end to end: reading ahead, hashing and the visitor's work go side by side.
+/// Reads a file once from end to end: reading ahead, hashing and the visitor's work go side by side. Only the calling
+/// thread reads, from the first byte to the last in order, so a file that still arrives may be read.
 ///
 /// returns  SHA-256 of all bytes of the file, hexadecimal.
 /// memory   two batches of 8 MiB, or two records if they are longer.
 /// errors   cancelled, and those of reading.
 Result<std::string> stream_records(const ByteSource& source, const Records& records, const RecordVisitor& visitor,
                                    int threads, Progress& progress);
-
-/// SHA-256 of all bytes of the file, hexadecimal. errors: cancelled, and those of reading.
-Result<std::string> digest_of(const ByteSource& source, Progress& progress);
 
 }  // namespace geosis

@@ -46,6 +46,7 @@ Result<void> Extractions::write_document(const BlobKey& key, const Json& documen
 
 PartReader Extractions::part_reader(const std::string& id) const {
   return [this, id](int level, int part) {
+    store_.touch(key(id, kManifest));
     auto bytes = store_.get(key(id, part_name(level, part)));
     // A finished result without all of its parts is none.
     if (!bytes && bytes.error().code != ErrorCode::unavailable) discard_result(id);

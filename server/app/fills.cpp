@@ -60,6 +60,7 @@ Result<std::shared_ptr<const FilledStoredVolume>> Fills::fill(std::shared_ptr<co
   Turn turn;
   if (!turn.take(*this, key, progress)) return Error{ErrorCode::cancelled, "filling missing samples was cancelled"};
   if (auto known = recent(key)) return known;
+  store_.touch(key);
   auto samples = load_or_fill(key, *volume->samples, options, progress);
   if (!samples) return std::move(samples).error();
   auto filled = std::make_shared<const FilledStoredVolume>(FilledStoredVolume{std::move(volume), *std::move(samples)});
@@ -71,6 +72,13 @@ std::shared_ptr<const FilledStoredVolume> Fills::recent(const BlobKey& key) {
   const std::lock_guard lock(mutex_);
   for (auto entry = recent_.begin(); entry != recent_.end(); ++entry) {
     if (entry->key != key) continue;
+    const auto path = store_.local_file(key);
+    if (!path || identity_of(*path) != entry->identity) {  // removed, or written to by others
+      recent_.erase(entry);
+      return nullptr;
+    }
+    store_.touch(key);
+    entry->identity = identity_of(*path);
     recent_.splice(recent_.begin(), recent_, entry);
     return entry->filled;
   }
@@ -78,8 +86,10 @@ std::shared_ptr<const FilledStoredVolume> Fills::recent(const BlobKey& key) {
 }
 
 void Fills::remember(const BlobKey& key, std::shared_ptr<const FilledStoredVolume> filled) {
+  const auto path = store_.local_file(key);
+  if (!path) return;
   const std::lock_guard lock(mutex_);
-  recent_.push_front({key, std::move(filled)});
+  recent_.push_front({key, std::move(filled), identity_of(*path)});
   if (recent_.size() > kRecentFills) recent_.pop_back();
 }
 
@@ -89,6 +99,7 @@ Result<std::unique_ptr<FilledVolume>> Fills::load_or_fill(const BlobKey& key, co
   if (const auto path = store_.local_file(key)) {
     auto stored = open_fill_file(samples, *path);
     if (stored) return stored;
+    store_.report_damage(key, stored.error().message);
   }
   if (auto filled = fill_into_store(key, samples, options, progress); !filled) return std::move(filled).error();
   const auto path = store_.local_file(key);

@@ -10,6 +10,7 @@
 #include "engine/base/progress.h"
 #include "engine/base/result.h"
 #include "engine/missing/fill.h"
+#include "server/app/file_identity.h"
 #include "server/app/volumes.h"
 #include "server/store/blob_store.h"
 
@@ -51,6 +52,7 @@ class Fills {
   struct Recent {
     BlobKey key;
     std::shared_ptr<const FilledStoredVolume> filled;
+    FileIdentity identity;
   };
 
   BlobStore& store_;

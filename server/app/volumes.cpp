@@ -101,6 +101,9 @@ Result<UploadResult> Volumes::add(const ByteSource& file, const UploadOptions& o
     return Error{ErrorCode::invalid_argument,
                  "SHA-256 of the body is " + description.digest + "; the request states " + *options.digest};
   }
+  if (options.confirm) {
+    if (auto confirmed = options.confirm(); !confirmed) return std::move(confirmed).error();
+  }
   return keep(*std::move(bricks), description, options.name);
 }
 

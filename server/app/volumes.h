@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -31,8 +32,9 @@ struct StoredVolume {
 
 struct UploadOptions {
   ImportOptions import;
-  std::string name;                   ///< what people call it; may be empty
-  std::optional<std::string> digest;  ///< SHA-256 of the file as the client knows it, hexadecimal
+  std::function<Result<void>()> confirm = {};  ///< asked once the file is read, before anything of it is kept
+  std::string name;                            ///< what people call it; may be empty
+  std::optional<std::string> digest;           ///< SHA-256 of the file as the client knows it, hexadecimal
 };
 
 struct UploadResult {

@@ -14,6 +14,7 @@
 #include <thread>
 #include <utility>
 
+#include "server/app/limited_store.h"
 #include "server/auth/api_keys.h"
 #include "server/http/front.h"
 #include "server/http/routes.h"
@@ -186,17 +187,22 @@ Result<void> serve(const ServeOptions& options) {
   StopSignals signals;  // before the first thread starts, so that every thread inherits the mask
   Log log(options.log_format, options.log_level);
   Metrics metrics(service_families());
-  const auto store = open_dir_store(options.store);
-  if (!store) return store.error();
+  auto opened = open_dir_store(options.store);
+  if (!opened) return std::move(opened).error();
+  LimitedStore store(*std::move(opened), {.limit = options.store_limit});
+  store.on_damage([&log](const BlobKey& key, const std::string& why) {
+    log.write(LogLevel::error, "damage in the store", {{"blob", key}, {"why", why}});
+  });
   const auto memory_bytes = memory_to_use(options);
   if (!memory_bytes) return memory_bytes.error();
   MemoryBudget memory(*memory_bytes);
   JobQueue queue(queue_options(options, memory));
   const std::vector<std::string> names = *keys ? (*keys)->tenants() : std::vector<std::string>{kTenant};
   http::ReplyCache kept(kKeptBytes);
-  Tenants tenants(**store, queue, memory, kept, options.threads, names);
+  Tenants tenants(store, queue, memory, kept, options.threads, names);
   tenants.on_events(counted_events(metrics, log));
-  Health health(**store, queue);
+  tenants.keep_house();
+  Health health(store, queue);
   RequestGate gate(*keys, log, metrics);
 
   const http::HealthChecks checks = {[&] { return health.not_ready(); }, [&] { return health.not_alive(); },

@@ -19,6 +19,7 @@ struct ServeOptions {
   std::string listen = "127.0.0.1:8080";
   std::string tls_certificate, tls_key;  ///< files in PEM; empty = plain HTTP
   std::filesystem::path store = "geosis-store";
+  std::uint64_t store_limit = 0;      ///< bytes that everything kept may take; 0 = as the disk allows
   std::filesystem::path page;         ///< folder of the built page
   std::string admin = kDefaultAdmin;  ///< metrics and probes; empty = nowhere
   std::vector<std::string> auth;      ///< none: anybody may call; api_keys FILE; empty allows loopback alone

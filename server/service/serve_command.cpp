@@ -49,6 +49,9 @@ Command add_serve_command(CLI::App& app) {
   certificate->type_name("PEM")->needs(key);
   key->type_name("PEM")->needs(certificate);
   flag("--store", arguments->store, "folder of everything that is kept")->type_name("DIR");
+  flag("--store-limit", options.store_limit,
+       "bytes that the store may take; results used longest ago make room, volumes do not; 0 = no limit")
+      ->type_name("BYTES");
   flag("--threads", options.threads, "threads that one extraction may use")->check(CLI::Range(1, 1024));
   flag("--workers", options.workers, "extractions at one time")->check(CLI::Range(1, 1024));
   flag("--queued", options.queued, "extractions that may wait; more are refused")->check(CLI::Range(1, 1'000'000));

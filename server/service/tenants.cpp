@@ -21,4 +21,10 @@ void Tenants::on_events(const ExtractionEvents& events) {
   for (auto& [name, tenant] : tenants_) tenant.extractions->on_events(events);
 }
 
+void Tenants::keep_house() {
+  for (auto& [name, tenant] : tenants_) {
+    tenant.housekeeping = std::make_unique<Housekeeping>(*tenant.volumes, *tenant.extractions);
+  }
+}
+
 }  // namespace geosis::server

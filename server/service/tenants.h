@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "server/app/extractions.h"
+#include "server/app/housekeeping.h"
 #include "server/app/volumes.h"
 #include "server/http/services.h"
 
@@ -21,11 +22,14 @@ class Tenants {
   http::Services services(const std::string& name) const;
   /// Tells of every extraction, whoever's it is. Set before the first request.
   void on_events(const ExtractionEvents& events);
+  /// Removes what killed processes left, now and every hour.
+  void keep_house();
 
  private:
   struct Tenant {
     std::unique_ptr<Volumes> volumes;
     std::unique_ptr<Extractions> extractions;
+    std::unique_ptr<Housekeeping> housekeeping;
   };
 
   BlobStore& store_;

@@ -12,8 +12,8 @@ namespace geosis::test {
 /// An empty folder that is removed with all in it.
 class TemporaryFolder {
  public:
-  TemporaryFolder() {
-    std::string name = testing::TempDir() + "/geosis-store-XXXXXX";
+  explicit TemporaryFolder(const std::string& parent = testing::TempDir()) {
+    std::string name = parent + "/geosis-store-XXXXXX";
     path_ = mkdtemp(name.data());
   }
   TemporaryFolder(const TemporaryFolder&) = delete;

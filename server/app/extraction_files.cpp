@@ -8,11 +8,14 @@
 #include "server/app/level_export.h"
 #include "server/app/result_streams.h"
 #include "server/documents/manifest.h"
+#include "server/store/piece_sums.h"
 
 // What of an extraction is read as files: parts, whole levels, the bodies. Files that were not there are made first.
 
 namespace geosis::server {
 namespace {
+
+constexpr std::size_t kMostChecked = 1024;
 
 Error not_done(const std::string& id, JobState state) {
   return {ErrorCode::already_exists, "extraction " + id + ": it is " + name_of(state) + ", not done"};
@@ -56,6 +59,8 @@ Result<LevelFile> Extractions::bodies(const std::string& id) {
     if (auto made = wait_until_made(begin_bodies(id)); !made) return std::move(made).error();
     bytes = store_.get(key(id, kBodies));
   }
+  // Damaged: described again when next asked for.
+  if (!bytes && bytes.error().code == ErrorCode::internal) static_cast<void>(store_.remove(key(id, kBodies)));
   if (!bytes) return std::move(bytes).error();
   return bytes_file(*std::move(bytes));
 }
@@ -159,20 +164,58 @@ Result<LevelFile> Extractions::level(const std::string& id, int level, LevelForm
 Result<LevelFile> Extractions::whole_level(const std::string& id, int level, LevelFormat format) {
   const std::string name = level_file_name(level, format);
   auto description = read_document(id, (name + ".json").c_str());
+  if (!description && description.error().code == ErrorCode::internal) forget_level(id, name);
   if (!description) {
     if (description.error().code != ErrorCode::not_found) return std::move(description).error();
     if (auto made = wait_until_made(begin_level(id, level, format)); !made) return std::move(made).error();
     description = read_document(id, (name + ".json").c_str());
     if (!description) return std::move(description).error();
   }
-  const auto path = store_.local_file(key(id, name));
-  if (!path) return path.error();
-  auto stream = file_stream(*path);
+  return described_level(id, name, *description);
+}
+
+/// A stored whole file, if it is the one that was described. One that is not is made again when next asked for.
+Result<LevelFile> Extractions::described_level(const std::string& id, const std::string& name,
+                                               const Json& description) {
+  const BlobKey file = key(id, name);
+  const auto path = store_.local_file(file);
+  if (!path) {
+    forget_level(id, name);
+    return path.error();
+  }
+  auto sums = description.value("sums", Json::array()).get<std::vector<std::uint64_t>>();
+  const auto damaged = [this, id, name, file] {
+    store_.report_damage(file, "its checksum does not match its bytes");
+    forget_level(id, name);
+  };
+  const FileIdentity identity = identity_of(*path);
+  bool is_checked = false;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto known = checked_files_.find(file);
+    is_checked = known != checked_files_.end() && known->second == identity;
+  }
+  if (!is_checked) {
+    const auto now = sums_of_file(*path);
+    if (!now) return now.error();
+    if (*now != sums) {
+      damaged();
+      return Error{ErrorCode::internal, "extraction " + id + ": a stored file is damaged; it is made again"};
+    }
+    const std::lock_guard lock(mutex_);
+    if (checked_files_.size() >= kMostChecked) checked_files_.clear();
+    checked_files_[file] = identity;
+  }
+  auto stream = file_stream(*path, std::move(sums), damaged);
   if (!stream) return std::move(stream).error();
-  return LevelFile{.sha256 = description->at("sha256").get<std::string>(),
-                   .bytes = description->at("bytes").get<std::uint64_t>(),
+  return LevelFile{.sha256 = description.at("sha256").get<std::string>(),
+                   .bytes = description.at("bytes").get<std::uint64_t>(),
                    .stream = *std::move(stream),
                    .transform = {}};
+}
+
+void Extractions::forget_level(const std::string& id, const std::string& name) {
+  static_cast<void>(store_.remove(key(id, name + ".json")));
 }
 
 Result<std::shared_ptr<Job>> Extractions::begin_level(const std::string& id, int level, LevelFormat format) {

@@ -1,6 +1,8 @@
 #include "server/app/extraction_watch.h"
 
 #include <atomic>
+#include <mutex>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -12,6 +14,32 @@ namespace geosis::server {
 namespace {
 
 constexpr int kRenewals = 4;  // in the time of a lease
+
+/// Names of this process's runs that go on. What the store says of them is only as good as the disk, which may be full.
+class LiveRuns {
+ public:
+  void add(const std::string& owner) {
+    const std::lock_guard lock(mutex_);
+    owners_.insert(owner);
+  }
+  void remove(const std::string& owner) {
+    const std::lock_guard lock(mutex_);
+    owners_.erase(owner);
+  }
+  bool contains(const std::string& owner) {
+    const std::lock_guard lock(mutex_);
+    return owners_.contains(owner);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::set<std::string> owners_;
+};
+
+LiveRuns& live_runs() {
+  static LiveRuns runs;
+  return runs;
+}
 
 Error cancelled() {
   return {ErrorCode::cancelled, "cancelled"};
@@ -53,6 +81,7 @@ std::string ExtractionWatch::new_owner() const {
 }
 
 void ExtractionWatch::own(RunRecord& record, const std::string& owner) const {
+  live_runs().add(owner);
   record.owner = owner;
   record.lease_ms = timing_.lease.count();
   record.beat = 0;
@@ -60,15 +89,24 @@ void ExtractionWatch::own(RunRecord& record, const std::string& owner) const {
   record.progress = 0;
 }
 
+void ExtractionWatch::disown(const std::string& owner) const {
+  live_runs().remove(owner);
+}
+
+bool ExtractionWatch::has_certainly_ended(const std::string& owner) const {
+  const std::string process = process_of(owner);
+  return process == store_.process_name() ? !live_runs().contains(owner) : !store_.may_be_running(process);
+}
+
 bool ExtractionWatch::claim(RunRecord& record, const std::string& owner) const {
   if (record.state != RunRecord::State::wanted) return false;
-  if (!record.owner.empty() && store_.may_be_running(process_of(record.owner))) return false;
+  if (!record.owner.empty() && !has_certainly_ended(record.owner)) return false;
   own(record, owner);
   return true;
 }
 
 bool ExtractionWatch::is_over(const RunRecord& record, Watched& watched) const {
-  if (record.owner.empty() || !store_.may_be_running(process_of(record.owner))) return true;
+  if (record.owner.empty() || has_certainly_ended(record.owner)) return true;
   const auto now = Clock::now();
   if (record.owner != watched.seen_owner || record.beat != watched.seen_beat ||
       watched.seen_at == Clock::time_point{}) {
@@ -88,6 +126,7 @@ bool ExtractionWatch::holds(const Extraction& extraction, const std::string& own
 void ExtractionWatch::release(const std::shared_ptr<Extraction>& extraction, const std::string& owner,
                               const Result<void>& outcome) {
   const std::string& id = extraction->identity().id;
+  disown(owner);
   if (outcome) {
     // What is left of these when the process dies here does no harm: the manifest is there.
     static_cast<void>(store_.remove(key(*extraction, kEarlyLevels)));
@@ -208,12 +247,13 @@ void ExtractionWatch::take_over(const std::shared_ptr<Extraction>& extraction, W
     own(changed, owner);
     return true;
   });
-  if (!record || record->owner != owner) return;
+  if (!record || record->owner != owner) return disown(owner);
   watched.owner = owner;
   watched.published = 0;  // told of again, as they are stored again
   watched.renewed = Clock::now();
   if (start_(extraction, owner)) return;
   watched.owner.clear();
+  disown(owner);
   static_cast<void>(records_.update(id, [&](RunRecord& changed) {
     if (changed.owner != owner) return false;
     changed.owner.clear();

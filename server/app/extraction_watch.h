@@ -43,6 +43,8 @@ class ExtractionWatch {
   std::string new_owner() const;
   /// Makes a record the owner's, if nobody has its lease for certain. For use in RunRecords::update.
   bool claim(RunRecord& record, const std::string& owner) const;
+  /// The run of that name did not begin, or has ended: whatever the store still says, its lease is over.
+  void disown(const std::string& owner) const;
 
   /// Follows an extraction that others compute, until it ends here or nobody holds it.
   void follow(const std::shared_ptr<Extraction>& extraction) { add(extraction, ""); }
@@ -82,6 +84,7 @@ class ExtractionWatch {
   void take_over(const std::shared_ptr<Extraction>& extraction, Watched& watched);
   bool is_over(const RunRecord& record, Watched& watched) const;
   void own(RunRecord& record, const std::string& owner) const;
+  bool has_certainly_ended(const std::string& owner) const;
   void read_levels(Extraction& extraction);
   Result<Json> read(const Extraction& extraction, const char* name) const;
   bool exists(const Extraction& extraction, const char* name) const;

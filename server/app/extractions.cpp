@@ -167,6 +167,7 @@ Result<std::shared_ptr<Extraction>> Extractions::record_and_start(Entry& entry, 
   auto done = is_recorded ? Result<void>{} : record_request(identity);
   Result<bool> is_ours = done ? record_interest(id, owner) : Result<bool>(done.error());
   if (is_ours && *is_ours) watch_.renew(extraction, owner);
+  if (!is_ours || !*is_ours) watch_.disown(owner);
   recorded.set_value(is_ours && *is_ours);
   if (!is_ours) {
     if (!is_recorded) static_cast<void>(store_.remove(key(id, kRequest)));

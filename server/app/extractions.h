@@ -168,6 +168,8 @@ class Extractions {
                                                          const ReconstructOptions& options, Progress& progress);
   Result<std::shared_ptr<Extraction>> find_done(const std::string& id);
   Result<Json> manifest_with_level(const std::string& id, int level);
+  Result<LevelFile> described_level(const std::string& id, const std::string& name, const Json& description);
+  void forget_level(const std::string& id, const std::string& name);
   Result<LevelFile> whole_level(const std::string& id, int level, LevelFormat format);
   Result<void> make_bodies(const Extraction::Identity& identity, Job& running);
   Result<void> make_level_file(const std::string& id, int level, LevelFormat format, const Json& manifest,
@@ -186,6 +188,7 @@ class Extractions {
   std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Entry>> entries_;  ///< recently used, by id
   std::map<BlobKey, std::weak_ptr<Job>> making_;           ///< files that are made on request, by their key
+  std::map<BlobKey, FileIdentity> checked_files_;          ///< whole files whose checksums were right
   RunRecords records_;
   ExtractionWatch watch_;  ///< last: its thread uses all above
 };

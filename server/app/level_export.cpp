@@ -1,5 +1,6 @@
 #include "server/app/level_export.h"
 
+#include <cerrno>
 #include <fstream>
 #include <limits>
 #include <vector>
@@ -11,12 +12,15 @@
 #include "engine/codec/ply.h"
 #include "engine/codec/stl.h"
 #include "server/documents/volume_document.h"
+#include "server/store/piece_sums.h"
 
 namespace geosis::server {
 namespace {
 
+// Streams do not say why; the last system call does.
 Error write_failed(const std::filesystem::path& path) {
-  return {ErrorCode::unavailable, "writing " + path.filename().string() + " failed"};
+  const bool is_full = errno == ENOSPC || errno == EDQUOT;
+  return {is_full ? ErrorCode::no_space : ErrorCode::unavailable, "writing " + path.filename().string() + " failed"};
 }
 
 Result<DecodedLevel> read_level(const Json& entry, int level, const PartReader& read_part, int threads) {
@@ -60,17 +64,20 @@ Result<void> write_level(std::ostream& out, const DecodedLevel& level, LevelForm
 
 Result<Json> describe(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
-  std::vector<char> piece(1 << 20);
+  std::vector<char> piece(kSummedPiece);
   Sha256 digest;
   std::uint64_t bytes = 0;
+  Json sums = Json::array();
   while (file) {
     file.read(piece.data(), static_cast<std::streamsize>(piece.size()));
     const auto count = static_cast<std::size_t>(file.gcount());
-    digest.update(std::as_bytes(std::span(piece.data(), count)));
+    const auto read = std::as_bytes(std::span(piece.data(), count));
+    digest.update(read);
+    if (count > 0) sums.push_back(sum_of_piece(read));
     bytes += count;
   }
   if (!file.eof()) return write_failed(path);
-  return Json{{"sha256", std::move(digest).hex()}, {"bytes", bytes}};
+  return Json{{"sha256", std::move(digest).hex()}, {"bytes", bytes}, {"sums", sums}};
 }
 
 }  // namespace

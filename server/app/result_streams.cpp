@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "server/app/problem.h"
+#include "server/store/piece_sums.h"
 
 namespace geosis::server {
 namespace {
@@ -55,20 +56,28 @@ class BytesStream final : public PieceStream {
   bool is_taken_ = false;
 };
 
-class FileStream final : public ByteStream {
+class FileStream final : public PieceStream {
  public:
-  explicit FileStream(std::ifstream file) : file_(std::move(file)) {}
-
-  Result<Pulled> pull(std::span<std::byte> into) override {
-    file_.read(reinterpret_cast<char*>(into.data()), static_cast<std::streamsize>(into.size()));
-    if (file_.bad()) return Error{ErrorCode::unavailable, "reading a stored file failed"};
-    const auto count = static_cast<std::size_t>(file_.gcount());
-    return Pulled{count > 0 ? Pulled::State::data : Pulled::State::end, count};
-  }
-  void on_ready(std::function<void()>) override {}
+  FileStream(std::ifstream file, std::vector<std::uint64_t> sums, std::function<void()> damaged)
+      : file_(std::move(file)), sums_(std::move(sums)), damaged_(std::move(damaged)) {}
 
  private:
+  Result<Pulled::State> next_piece(std::string& piece) override {
+    if (next_ == sums_.size()) return Pulled::State::end;
+    piece.resize(kSummedPiece);
+    file_.read(piece.data(), static_cast<std::streamsize>(piece.size()));
+    piece.resize(static_cast<std::size_t>(file_.gcount()));
+    if (file_.bad()) return Error{ErrorCode::unavailable, "reading a stored file failed"};
+    if (sum_of_piece(std::as_bytes(std::span(piece))) == sums_[next_++]) return Pulled::State::data;
+    piece.clear();
+    damaged_();
+    return Error{ErrorCode::internal, "a stored file is damaged"};
+  }
+
   std::ifstream file_;
+  const std::vector<std::uint64_t> sums_;
+  const std::function<void()> damaged_;
+  std::size_t next_ = 0;
 };
 
 /// Carries the extraction's bell to whoever waits for the stream, and remembers a ring that nobody waited for.
@@ -215,10 +224,12 @@ std::unique_ptr<ByteStream> bytes_stream(std::vector<std::byte> bytes) {
   return std::make_unique<BytesStream>(std::move(bytes));
 }
 
-Result<std::unique_ptr<ByteStream>> file_stream(const std::string& path) {
+Result<std::unique_ptr<ByteStream>> file_stream(const std::string& path, std::vector<std::uint64_t> sums,
+                                                std::function<void()> damaged) {
   std::ifstream file(path, std::ios::binary);
   if (!file) return Error{ErrorCode::not_found, "a stored file is gone"};
-  return std::unique_ptr<ByteStream>(std::make_unique<FileStream>(std::move(file)));
+  return std::unique_ptr<ByteStream>(
+      std::make_unique<FileStream>(std::move(file), std::move(sums), std::move(damaged)));
 }
 
 bool knows_the_end(const Extraction& extraction, std::uint64_t after) {

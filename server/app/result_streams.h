@@ -13,8 +13,12 @@ namespace geosis::server {
 
 /// Bytes that are there already.
 std::unique_ptr<ByteStream> bytes_stream(std::vector<std::byte> bytes);
-/// A file, read as it is pulled. errors: not_found, unavailable.
-Result<std::unique_ptr<ByteStream>> file_stream(const std::string& path);
+/// A file, read and judged piece by piece as it is pulled. errors: not_found, unavailable.
+///
+/// sums      of its pieces (sums_of_file): a piece that has another one ends the stream with an error.
+/// damaged   called when that happens.
+Result<std::unique_ptr<ByteStream>> file_stream(const std::string& path, std::vector<std::uint64_t> sums,
+                                                std::function<void()> damaged);
 
 /// Server-sent events of an extraction: `progress` as it goes, `level` for each level as it is ready (id 1, 2, ...), at
 /// last `done` with the resource or `failed` with the problem (the next id). Now and then a comment, so that nobody on

@@ -60,6 +60,8 @@ class Volumes {
   Result<UploadResult> add(const ByteSource& file, const UploadOptions& options, Progress& progress,
                            std::vector<GridCandidate>& candidates);
 
+  const std::string& tenant() const { return tenant_; }
+
   /// errors   not_found.  internal: what is stored is damaged.
   Result<std::shared_ptr<const StoredVolume>> open(const std::string& id);
   /// The volume document of the outside contract.

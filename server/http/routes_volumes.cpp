@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "server/app/arriving_file.h"
+#include "server/app/imports.h"
 #include "server/documents/import_options.h"
 #include "server/documents/slice_png.h"
 #include "server/documents/volume_document.h"
@@ -21,6 +22,10 @@ namespace geosis::server::http {
 namespace {
 
 constexpr std::int64_t kLargestPage = 1000;
+
+Imports imports_of(const Services& services) {
+  return {services.store, services.volumes, services.queue};
+}
 
 /// Size of the file that the body is, when the file can be imported while it arrives.
 std::optional<std::uint64_t> arriving_bytes(const Request& request, const ImportOptions& options) {
@@ -58,20 +63,30 @@ Reply import_arriving(Services services, const Request& request, BodyReader& wir
   return added_reply(services.volumes.add(file, options, unwatched, candidates), candidates);
 }
 
+Reply import_later(Services services, std::shared_ptr<const StagedFile> file, UploadOptions options) {
+  const auto begun = imports_of(services).begin(std::move(file), std::move(options), kImportMemoryBytes);
+  if (!begun) return error_reply(begun.error());
+  Reply reply = json_reply(202, *begun);
+  reply.headers.emplace_back("Location", "/v1/volumes/" + begun->at("id").get<std::string>());
+  reply.headers.emplace_back("Preference-Applied", "respond-async");
+  return reply;
+}
+
 Reply upload(Services services, const Request& request, BodyReader& body) {
   auto options = upload_options(request.query, {"name"});
   if (!options) return error_reply(options.error());
   options->name = parameter(request, "name").value_or("");
-  if (const auto bytes = arriving_bytes(request, options->import)) {
-    return import_arriving(services, request, body, *bytes, *std::move(options));
-  }
-
   const auto memory = memory_to_import(services);
   if (!memory) return error_reply(memory.error());
+  const bool is_async = preference(request).respond_async;
+  const auto bytes = arriving_bytes(request, options->import);
+  if (bytes && !is_async) return import_arriving(services, request, body, *bytes, *std::move(options));
+
   auto received = receive_file(request, body, services.store);
   if (!received) return error_reply(received.error());
   if (auto added = add_form_options(received->fields, *options); !added) return error_reply(added.error());
   if (options->name.empty()) options->name = received->name;
+  if (is_async) return import_later(services, std::move(received->file), *std::move(options));
   const auto file = open_file(received->file->path());
   if (!file) return error_reply(file.error());
   std::vector<GridCandidate> candidates;
@@ -89,7 +104,10 @@ Reply list(Services services, const Request& request) {
 }
 
 Reply get(Services services, const Request& request) {
-  const auto document = services.volumes.document(request.captures[0]);
+  auto document = services.volumes.document(request.captures[0]);
+  if (!document && document.error().code == ErrorCode::not_found) {
+    document = imports_of(services).document(request.captures[0]);
+  }
   return document ? json_reply(200, *document) : error_reply(document.error());
 }
 
@@ -101,16 +119,24 @@ Reply change(Services services, const Request& request) {
   return document ? json_reply(200, *document) : error_reply(document.error());
 }
 
-Reply remove(Services services, const Request& request) {
-  const std::string& id = request.captures[0];
-  // A damaged one cannot be shown but can be removed.
-  if (auto known = services.volumes.document(id); !known && known.error().code != ErrorCode::internal)
-    return error_reply(known.error());
-  if (auto purged = services.extractions.purge_results_of(id); !purged) return error_reply(purged.error());
-  if (auto removed = services.volumes.remove(id); !removed) return error_reply(removed.error());
+Reply no_content() {
   Reply reply;
   reply.status = 204;
   return reply;
+}
+
+Reply remove(Services services, const Request& request) {
+  const std::string& id = request.captures[0];
+  const auto known = services.volumes.document(id);
+  if (!known && known.error().code == ErrorCode::not_found) {
+    const auto removed = imports_of(services).remove(id);
+    return removed ? no_content() : error_reply(removed.error());
+  }
+  // A damaged one cannot be shown but can be removed.
+  if (!known && known.error().code != ErrorCode::internal) return error_reply(known.error());
+  if (auto purged = services.extractions.purge_results_of(id); !purged) return error_reply(purged.error());
+  if (auto removed = services.volumes.remove(id); !removed) return error_reply(removed.error());
+  return no_content();
 }
 
 Reply histogram(Services services, const Request& request) {

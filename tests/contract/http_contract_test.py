@@ -13,6 +13,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -160,6 +161,29 @@ class Volumes(Refusals):
         for query in ("dims=1,2", "inline_byte=0", "format=gif", "no_such_option=1"):
             problem = self.refused(CLIENT.upload(SURVEY, query), 400, "invalid_argument")
             self.assertIn(query.partition("=")[0], problem["detail"])
+
+    def test_an_import_may_go_on_after_the_answer(self):
+        accepted = CLIENT.upload(raw_cube(7, 8, 9), "format=raw&dims=7,8,9&name=later", Prefer="respond-async")
+        self.assertEqual(accepted.status, 202)
+        self.assertEqual(accepted.headers["preference-applied"], "respond-async")
+        document = self.ended(accepted.headers["location"])
+        self.assertEqual((document["state"], document["dims"], document["name"]), ("ready", [7, 8, 9], "later"))
+        self.assertEqual(CLIENT.upload(raw_cube(7, 8, 9), "format=raw&dims=7,8,9").json()["id"], document["id"])
+        self.assertEqual(CLIENT.call("DELETE", accepted.headers["location"]).status, 204)
+        self.refused(CLIENT.get(accepted.headers["location"]), 404, "not_found")
+        self.assertEqual(CLIENT.get(f"/v1/volumes/{document['id']}").status, 200)
+
+    def test_an_import_that_fails_later_says_why(self):
+        accepted = CLIENT.upload(two_grids(6, 8, 4), "", Prefer="respond-async")
+        failed = self.ended(accepted.headers["location"])
+        self.assertEqual((failed["state"], failed["error"]["status"]), ("failed", 422))
+        self.assertGreaterEqual(len(failed["error"]["candidates"]), 2)
+
+    @staticmethod
+    def ended(location):
+        while (document := CLIENT.get(location).json())["state"] == "importing":
+            time.sleep(0.02)
+        return document
 
     def test_encoded_bodies_are_not_taken(self):
         self.refused(CLIENT.upload(SURVEY, Content_Encoding="gzip"), 415)

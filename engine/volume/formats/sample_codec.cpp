@@ -132,8 +132,19 @@ NullValue::NullValue(std::optional<double> value, SampleCode code) {
   if (code == SampleCode::ibm32) tolerance_ = std::fabs(value_) * 0x1p-20f;
 }
 
+// Most samples are finite and none stands for "missing": that is found without a branch in the loop.
+static bool are_plain(std::span<const float> samples) {
+  bool is_finite = true, is_nonzero = false;
+  for (const float value : samples) {
+    is_finite &= std::fabs(value) <= std::numeric_limits<float>::max();
+    is_nonzero |= value != 0;
+  }
+  return is_finite && is_nonzero;
+}
+
 SampleCounts NullValue::clean(std::span<float> samples) const {
   constexpr float largest = std::numeric_limits<float>::max();
+  if (!set_ && are_plain(samples)) return {.all_zero = false};
   SampleCounts counts;
   bool any_nonzero = false;
   for (float& value : samples) {

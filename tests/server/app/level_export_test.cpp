@@ -6,6 +6,7 @@
 #include "engine/codec/level_codec.h"
 #include "server/app/result_streams.h"
 #include "server/store/memory_store.h"
+#include "server/store/piece_sums.h"
 #include "tests/server/app/service_fixture.h"
 
 namespace geosis::server {
@@ -75,7 +76,7 @@ TEST_F(LevelExportTest, SeveralPartsBecomeOneMesh) {
   };
   const auto described = export_level((*staged)->path(), manifest, 0, LevelFormat::drc, read, 1, progress);
   ASSERT_TRUE(described) << described.error().message;
-  auto stream = file_stream((*staged)->path().string());
+  auto stream = file_stream((*staged)->path().string(), *sums_of_file((*staged)->path()), [] {});
   ASSERT_TRUE(stream);
   const std::string whole = read_all(**stream);
   const auto joined = decode_level({std::as_bytes(std::span(whole))});

@@ -1,8 +1,11 @@
 #include "server/app/result_streams.h"
 
+#include <fstream>
+
 #include <gtest/gtest.h>
 
 #include "server/store/memory_store.h"
+#include "server/store/piece_sums.h"
 #include "tests/server/app/service_fixture.h"
 
 namespace geosis::server {
@@ -81,7 +84,22 @@ TEST_F(ResultStreamsTest, BytesAndFilesComeWhole) {
   const std::string expected(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   EXPECT_EQ(read_all(*bytes_stream(bytes)), expected);
   EXPECT_EQ(read_all(*bytes_stream({})), "");
-  EXPECT_FALSE(file_stream("/nonexistent/file"));
+  EXPECT_FALSE(file_stream("/nonexistent/file", {}, [] {}));
+}
+
+TEST_F(ResultStreamsTest, AFileThatIsDamagedAfterItsFirstPieceEndsThere) {
+  auto staged = *store->stage();
+  std::string content(150'000, 'a');
+  const auto write = [&] { std::ofstream(staged->path(), std::ios::binary) << content; };
+  write();
+  const auto sums = *sums_of_file(staged->path());
+  EXPECT_EQ(read_all(**file_stream(staged->path(), sums, [] {})), content);
+  content[100'000] = 'b';
+  write();
+  int reports = 0;
+  const std::string got = read_all(**file_stream(staged->path(), sums, [&] { ++reports; }));
+  EXPECT_EQ(got, std::string(65'536, 'a') + "{internal}");
+  EXPECT_EQ(reports, 1);
 }
 
 }  // namespace

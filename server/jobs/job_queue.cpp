@@ -170,6 +170,7 @@ void JobQueue::run_worker(const std::stop_token& stop, Lane lane) {
     run(item);
     note_end(item);
     item = {};
+    if (options_.after_job) options_.after_job();
   }
 }
 

@@ -41,6 +41,7 @@ struct JobQueueOptions {
   std::size_t tenant_capacity = 0;       ///< of these in the name of one tenant; 0 = all
   std::chrono::milliseconds longest{0};  ///< that a job may take from its start; 0 = any time
   MemoryBudget* budget = nullptr;        ///< what jobs reserve from; null = memory is not counted. Outlives the queue.
+  std::function<void()> after_job = {};  ///< called by the worker whose job has ended; must not throw
   /// How long a job lets those of higher priority go first, by priority.
   std::array<std::chrono::milliseconds, kPriorities> patience = {std::chrono::seconds(0), std::chrono::seconds(5),
                                                                  std::chrono::seconds(60)};

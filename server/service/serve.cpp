@@ -24,6 +24,7 @@
 #include "server/metrics/metrics.h"
 #include "server/service/descriptor_limit.h"
 #include "server/service/health.h"
+#include "server/service/heap.h"
 #include "server/service/request_gate.h"
 #include "server/service/service_metrics.h"
 #include "server/service/tenants.h"
@@ -133,14 +134,15 @@ Result<std::uint64_t> memory_to_use(const ServeOptions& options) {
                                                 std::to_string(kLeastMemory) + " bytes are needed"};
 }
 
-JobQueueOptions queue_options(const ServeOptions& options, MemoryBudget& memory) {
+JobQueueOptions queue_options(const ServeOptions& options, MemoryBudget& memory, HeapTrimmer& trim) {
   return {.workers = options.workers,
           .preview_workers = 1,
           .most_batch = std::max(options.workers - 1, 1),
           .capacity = static_cast<std::size_t>(options.queued),
           .tenant_capacity = static_cast<std::size_t>(options.queued_per_tenant),
           .longest = options.longest,
-          .budget = &memory};
+          .budget = &memory,
+          .after_job = [&trim] { trim(); }};
 }
 
 http::Router routes_of(const Tenants& tenants, const http::HealthChecks& checks, const std::filesystem::path& page) {
@@ -196,7 +198,8 @@ Result<void> serve(const ServeOptions& options) {
   const auto memory_bytes = memory_to_use(options);
   if (!memory_bytes) return memory_bytes.error();
   MemoryBudget memory(*memory_bytes);
-  JobQueue queue(queue_options(options, memory));
+  HeapTrimmer trim;
+  JobQueue queue(queue_options(options, memory, trim));
   const std::vector<std::string> names = *keys ? (*keys)->tenants() : std::vector<std::string>{kTenant};
   http::ReplyCache kept(kKeptBytes);
   Tenants tenants(store, queue, memory, kept, options.threads, names);

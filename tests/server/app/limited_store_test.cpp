@@ -85,7 +85,8 @@ TEST_F(LimitedStoreTest, AnEvictedResultIsComputedAgainWithTheSameBytes) {
   const std::string id = first->identity().id;
   const std::string part = test::read_all(*service.extractions.part(id, 0, 0)->stream);
   std::uint64_t stored = 0;
-  for (const BlobInfo& blob : *store->inventory("")) stored += blob.bytes;
+  const auto blobs = store->inventory("");
+  for (const BlobInfo& blob : *blobs) stored += blob.bytes;
   ASSERT_LT(stored, 200'000u);
   ASSERT_TRUE(commit(*store, "default/volumes/" + std::string(64, 'e') + "/data/p.1/bricks", 201'000 - stored));
   ASSERT_FALSE(store->exists("default/extractions/" + id + "/manifest.json").value());

@@ -112,6 +112,7 @@ PassOptions Reducer::plan_pass(const Goal& goal, bool first, bool stuck) const {
   pass.goal.triangles = static_cast<std::int64_t>(keep * now);
   // What the first pass folds over is of M0's size, and later collapses smooth nearly all of it out.
   pass.goal.refuse_folds = mesh_.m0() == nullptr;
+  pass.goal.is_followed = true;
   pass.window_size = options_.sizes.pass;
   pass.last = false;
   return pass;

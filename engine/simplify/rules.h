@@ -26,6 +26,7 @@ struct Goal {
   float max_cost = std::numeric_limits<float>::infinity();   ///< of a collapse
   float max_error = std::numeric_limits<float>::infinity();  ///< of a collapse, in voxels; estimated
   bool refuse_folds = true;                                  ///< see folds_over
+  bool is_followed = false;                                  ///< by other passes, which see again what this one skips
 };
 
 }  // namespace geosis

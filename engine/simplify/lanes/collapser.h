@@ -26,8 +26,11 @@ namespace HWY_NAMESPACE {
 /// than all of it, and fewer vanishing ends of thin bodies than none.
 inline constexpr float kFreshShare = 0.5f;
 
-/// After a collapse only edges up to this multiple of the cheapest one around are worth queueing.
-inline constexpr float kQueueLimit = 1.5f;
+/// After a collapse only edges up to this multiple of the cheapest one around are worth queueing: fewer in a pass that
+/// others follow, every edge once few triangles are left, where the next best choice can be a bad one.
+inline constexpr float kQueueLimit = 2.0f;
+inline constexpr float kQueueLimitInPass = 1.5f;
+inline constexpr std::int64_t kFewTriangles = 8192;
 
 inline constexpr int kChoices = 8;          // edges to choose from: the paper's Table 1
 inline constexpr int kMostRefusals = 1000;  // in a row; what is left then will hardly collapse
@@ -113,10 +116,15 @@ class Collapser {
     }
     float least = costs[0];
     for (int k = 1; k < around.count; ++k) least = costs[k] < least ? costs[k] : least;
-    const float limit = kQueueLimit * least;
+    const float limit = queue_limit(least);
     for (int k = 0; k < around.count; ++k) {
       if (costs[k] <= limit) push(u, around.ids[k], costs[k]);
     }
+  }
+
+  float queue_limit(float least) const {
+    if (goal_.is_followed) return kQueueLimitInPass * least;
+    return w_.triangles < kFewTriangles ? std::numeric_limits<float>::max() : kQueueLimit * least;
   }
 
   HWY_INLINE void push(LocalVertex u, LocalVertex v, float cost) {

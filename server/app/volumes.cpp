@@ -97,10 +97,6 @@ Result<UploadResult> Volumes::add(const ByteSource& file, const UploadOptions& o
   if (!imported) return std::move(imported).error();
   imported->samples.reset();  // unmapped before it moves
   const VolumeDescription& description = imported->description;
-  if (options.digest && *options.digest != description.digest) {
-    return Error{ErrorCode::invalid_argument,
-                 "SHA-256 of the body is " + description.digest + "; the request states " + *options.digest};
-  }
   if (options.confirm) {
     if (auto confirmed = options.confirm(); !confirmed) return std::move(confirmed).error();
   }

@@ -34,7 +34,6 @@ struct UploadOptions {
   ImportOptions import;
   std::function<Result<void>()> confirm = {};  ///< asked once the file is read, before anything of it is kept
   std::string name;                            ///< what people call it; may be empty
-  std::optional<std::string> digest;           ///< SHA-256 of the file as the client knows it, hexadecimal
 };
 
 struct UploadResult {
@@ -56,7 +55,7 @@ class Volumes {
   /// kept; one whose stored samples were found damaged is replaced.
   ///
   /// candidates   filled as import_volume does.
-  /// errors       those of import_volume; invalid_argument: the digest is another; those of the store.
+  /// errors       those of import_volume, of options.confirm and of the store.
   Result<UploadResult> add(const ByteSource& file, const UploadOptions& options, Progress& progress,
                            std::vector<GridCandidate>& candidates);
 

@@ -8,7 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/base/digest.h"
 #include "server/store/memory_store.h"
 #include "tests/server/app/service_fixture.h"
 
@@ -62,15 +61,14 @@ TEST_F(VolumesTest, OtherOptionsMakeAnotherVolume) {
   EXPECT_NE(plain->document.at("id"), moved->document.at("id"));
 }
 
-TEST_F(VolumesTest, WrongDigestIsRefusedAndLeavesNothing) {
+TEST_F(VolumesTest, WhatIsNotConfirmedLeavesNothing) {
   UploadOptions options = ball_options();
-  options.digest = std::string(64, '0');
+  options.confirm = []() -> Result<void> { return Error{ErrorCode::invalid_argument, "another digest"}; };
   const auto refused = add(ball_file(5), options);
   ASSERT_FALSE(refused);
-  EXPECT_EQ(refused.error().code, ErrorCode::invalid_argument);
+  EXPECT_EQ(refused.error().message, "another digest");
   EXPECT_TRUE(service.volumes.list(10, "")->at("volumes").empty());
-  options.digest = sha256_hex(ball_file(5));
-  EXPECT_TRUE(add(ball_file(5), options));
+  EXPECT_TRUE(add(ball_file(5), ball_options()));
 }
 
 TEST_F(VolumesTest, NonsenseIsRefusedAndLeavesNothing) {

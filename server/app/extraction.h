@@ -31,6 +31,7 @@ class Extraction {
   struct Identity {
     std::string id, volume, created_at;
     Json request;
+    std::string asked_by = {};  ///< id of the call that made it start here, for the log; empty: none did
   };
   struct Snapshot {
     JobState state = JobState::queued;

@@ -104,7 +104,7 @@ JobDemand Extractions::demand_of(const Extraction::Identity& identity, Priority 
 }
 
 Result<std::shared_ptr<Extraction>> Extractions::create(const std::string& volume, const Json& request,
-                                                        Priority priority) {
+                                                        Priority priority, const std::string& asked_by) {
   const auto wanted = check(volume, request);
   if (!wanted) return wanted.error();
   Json canonical = request_document(wanted->options, wanted->volume->summary.shape);
@@ -123,7 +123,7 @@ Result<std::shared_ptr<Extraction>> Extractions::create(const std::string& volum
     }
   }
   if (events_.asked) events_.asked(false);
-  return record_and_start(*entry, {id, volume, timestamp(), std::move(canonical)}, *is_recorded, priority);
+  return record_and_start(*entry, {id, volume, timestamp(), std::move(canonical), asked_by}, *is_recorded, priority);
 }
 
 /// Brings the entry up to date. True when the request is recorded already; what is damaged is forgotten and made anew.

@@ -65,9 +65,11 @@ class Extractions {
   /// Records the request durably and starts it, unless it is done or running; equal requests are computed once. A
   /// failed or cancelled one starts again. Adds one interest.
   ///
+  /// asked_by     id of the call, for the log.
   /// errors   not_found: the volume; invalid_argument, unsupported: the request; unavailable: the queue is full;
   ///          quota_exceeded; limit_exceeded: it needs more memory than there is.
-  Result<std::shared_ptr<Extraction>> create(const std::string& volume, const Json& request, Priority priority);
+  Result<std::shared_ptr<Extraction>> create(const std::string& volume, const Json& request, Priority priority,
+                                             const std::string& asked_by = {});
   /// What create() would lead to, about, from the volume's index alone: estimate_document(). errors: as create().
   Result<Json> estimate(const std::string& volume, const Json& request);
   /// The extraction, from memory or from the store. One that nobody computes any more is computed here; one that

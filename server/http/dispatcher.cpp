@@ -9,6 +9,8 @@
 namespace geosis::server::http {
 namespace {
 
+constexpr int kClientLeft = 499;
+
 /// A body that is counted as it is read.
 class CountedBody final : public BodyReader {
  public:
@@ -117,12 +119,16 @@ Reply Dispatcher::answer_without_handler(const Router::Resolved& resolved) const
 }
 
 Reply Dispatcher::finish(const Request& request, Reply reply, std::uint64_t bytes_in) const {
-  if (reply.pending) return reply;
-  apply_conditions(request, reply);
-  if (request.method != "OPTIONS") apply_cors(cors_, request, reply);
   const std::string id = request.request_id.empty() ? request_id_of(request) : request.request_id;
-  reply.headers.emplace_back("X-Request-Id", id);
+  if (!reply.pending) {
+    apply_conditions(request, reply);
+    if (request.method != "OPTIONS") apply_cors(cors_, request, reply);
+    reply.headers.emplace_back("X-Request-Id", id);
+  }
   if (!middleware_) return reply;
+  for (auto& [name, value] : reply.headers) {
+    if (name == "Retry-After") value = std::to_string(middleware_->retry_after_seconds());
+  }
   reply.on_written = teller(*middleware_,
                             {.method = request.method,
                              .path = request.path,
@@ -130,7 +136,7 @@ Reply Dispatcher::finish(const Request& request, Reply reply, std::uint64_t byte
                              .request_id = id,
                              .trace_id = request.trace_id,
                              .tenant = request.tenant,
-                             .status = reply.status,
+                             .status = reply.pending ? kClientLeft : reply.status,
                              .bytes_in = bytes_in},
                             request.received);
   return reply;

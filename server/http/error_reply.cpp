@@ -10,7 +10,7 @@
 namespace geosis::server::http {
 namespace {
 
-constexpr const char* kRetryAfterSeconds = "1";
+constexpr const char* kRetryAfterSeconds = "1";  // where no middleware knows better
 
 Json refusal_document(int status, ErrorCode code, const std::string& detail) {
   return {{"type", std::string("urn:geosis:problem:") + name_of(code)},

@@ -73,7 +73,8 @@ struct Reply {
   std::unique_ptr<ByteStream> stream;         ///< instead of the body
   std::optional<std::uint64_t> length;        ///< of the stream; unset = chunked
   std::unique_ptr<PendingReply> pending;      ///< instead of all else
-  /// Told the bytes on the wire when the answer is written (complete) or given up. Must not throw.
+  /// Told the bytes on the wire when the answer is written (complete) or given up; of a pending one only when its
+  /// client left before it came. Must not throw.
   std::function<void(std::uint64_t bytes, bool is_complete)> on_written = {};
 };
 

@@ -200,7 +200,7 @@ Letter FrontLoop::letter_with_answer(std::uint64_t connection, const Request& re
     auto share = held_bodies_.take(reply.body.size());
     if (!share) reply = dispatcher_.refuse(request, {503, "too many answers wait for their readers"});
     if (reply.pending) {
-      letter.suspended = std::make_unique<Suspended>(Suspended{request, form, std::move(reply.pending)});
+      letter.suspended = std::make_unique<Suspended>(request, form, std::move(reply));
     } else {
       letter.answer =
           std::make_unique<ReplyWriter>(std::move(reply), form, share ? *std::move(share) : BodyBudget::Share());
@@ -238,6 +238,7 @@ bool FrontLoop::upload(Connection& connection, Head head, Router::Resolved resol
 void FrontLoop::resume(Connection& connection, std::unique_ptr<Suspended> suspended) {
   handlers_.resume(HandlerPool::Lane::reading,
                    [this, id = connection.id(), kept = std::shared_ptr<Suspended>(std::move(suspended))] {
+                     kept->set_resumed();
                      const auto run = [&] { return dispatcher_.resume(kept->request, *kept->pending); };
                      mailbox_->post(letter_with_answer(id, kept->request, kept->form, run));
                    });

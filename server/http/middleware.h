@@ -29,9 +29,11 @@ class Middleware {
   virtual ~Middleware() = default;
   /// Once for each request that has a handler, before its body is read. Sets the request's tenant, or refuses.
   virtual std::optional<Refusal> admit(Request& request) = 0;
-  /// Once for each request, when its answer is written or given up; never for one whose client left before there was
-  /// an answer.
+  /// Once for each request, when its answer is written or given up, or its client left while the answer was pending
+  /// (status 499, which no client ever sees).
   virtual void answered(const Answered& answered) = 0;
+  /// What 503 and 429 say in Retry-After. From any thread, quickly.
+  virtual int retry_after_seconds() const { return 1; }
 };
 
 }  // namespace geosis::server::http

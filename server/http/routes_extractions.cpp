@@ -60,7 +60,8 @@ Reply create(Services services, const Request& request) {
     const auto estimate = services.extractions.estimate(request.captures[0], *wanted);
     return estimate ? json_reply(200, *estimate) : error_reply(estimate.error());
   }
-  const auto extraction = services.extractions.create(request.captures[0], *wanted, priority_of(request));
+  const auto extraction =
+      services.extractions.create(request.captures[0], *wanted, priority_of(request), request.request_id);
   if (!extraction) return error_reply(extraction.error());
   if (accepts(request, kMultipart)) {
     return level_stream_reply(*extraction, abandonment(*extraction));

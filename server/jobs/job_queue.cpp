@@ -11,6 +11,7 @@ namespace geosis::server {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestGrace = std::chrono::hours(24 * 365);  // now + time must not overflow
+constexpr double kNewestShare = 1.0 / 8;                                           // of the mean time of jobs
 
 Result<void> call(const JobQueue::Work& work, Job& job) {
   try {
@@ -132,6 +133,11 @@ std::size_t JobQueue::depth() const {
   return waiting_.size();
 }
 
+std::chrono::duration<double> JobQueue::expected_wait() const {
+  const std::lock_guard lock(mutex_);
+  return mean_run_ * static_cast<double>(waiting_.size()) / std::max(options_.workers, 1);
+}
+
 JobQueueReport JobQueue::report() {
   const std::lock_guard lock(mutex_);
   JobQueueReport report{.rows = rows_, .capacity = options_.capacity, .is_draining = is_draining_};
@@ -178,7 +184,11 @@ void JobQueue::note_end(const Item& item) {
   const JobState state = item.job->status().state;
   {
     const std::lock_guard lock(mutex_);
-    running_.erase(item.job);
+    if (const auto ended = running_.extract(item.job); ended && state != JobState::cancelled) {
+      const std::chrono::duration<double> took = Clock::now() - ended.mapped().started;
+      mean_run_ = has_run_ ? mean_run_ + (took - mean_run_) * kNewestShare : took;
+      has_run_ = true;
+    }
     JobQueueReport::Row& counts = row(item.demand.priority);
     ++(state == JobState::done ? counts.done : state == JobState::failed ? counts.failed : counts.cancelled);
     if (is_idle()) became_idle_.notify_all();
@@ -209,7 +219,7 @@ bool JobQueue::start_next(Lane lane, Item& item) {
     item.memory = *std::move(memory);
     waiting_.erase(next);
     if (options_.longest.count() > 0) item.job->limit_time(now + options_.longest);
-    running_[item.job] = {item.demand.priority, item.job->signs_of_life(), now};
+    running_[item.job] = {item.demand.priority, now, item.job->signs_of_life(), now};
     row(item.demand.priority).waited_seconds += std::chrono::duration<double>(now - item.submitted).count();
     return true;
   }

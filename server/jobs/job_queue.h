@@ -91,6 +91,8 @@ class JobQueue {
   /// Jobs that wait.
   std::size_t depth() const;
   JobQueueReport report();
+  /// When a place may be free, about: what waits, at the mean time of recent jobs, on all workers.
+  std::chrono::duration<double> expected_wait() const;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -104,6 +106,7 @@ class JobQueue {
   using Waiting = std::multimap<Clock::time_point, Item>;  ///< by when they are due; equal ones in order of arrival
   struct Running {
     Priority priority;
+    Clock::time_point started;
     std::uint64_t seen_signs = 0;  ///< of life, when report() last looked
     Clock::time_point seen_at;
   };
@@ -129,6 +132,8 @@ class JobQueue {
   Waiting waiting_;
   std::map<std::shared_ptr<Job>, Running> running_;
   std::array<JobQueueReport::Row, kPriorities> rows_;
+  std::chrono::duration<double> mean_run_{0};  ///< of jobs that ran, each older one counting less
+  bool has_run_ = false;
   bool is_draining_ = false;
   std::vector<std::jthread> threads_;
 };

@@ -1,6 +1,8 @@
 #include "server/service/request_gate.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -10,6 +12,7 @@ namespace geosis::server {
 namespace {
 
 constexpr std::string_view kScheme = "bearer ";
+constexpr double kLeastWait = 1, kLongestWait = 60;  // seconds
 
 /// The key of "Authorization: Bearer KEY"; nothing in any other form.
 std::optional<std::string_view> key_of(const http::Request& request) {
@@ -36,8 +39,12 @@ std::string status_text(int status) {
 
 }  // namespace
 
-RequestGate::RequestGate(std::optional<ApiKeys> keys, Log& log, Metrics& metrics)
-    : keys_(std::move(keys)), log_(log), metrics_(metrics) {}
+RequestGate::RequestGate(std::optional<ApiKeys> keys, const JobQueue& queue, Log& log, Metrics& metrics)
+    : keys_(std::move(keys)), queue_(queue), log_(log), metrics_(metrics) {}
+
+int RequestGate::retry_after_seconds() const {
+  return static_cast<int>(std::clamp(std::ceil(queue_.expected_wait().count()), kLeastWait, kLongestWait));
+}
 
 std::optional<http::Refusal> RequestGate::admit(http::Request& request) {
   if (!keys_ || is_open(request)) return std::nullopt;

@@ -206,7 +206,7 @@ Result<void> serve(const ServeOptions& options) {
   tenants.on_events(counted_events(metrics, log));
   tenants.keep_house();
   Health health(store, queue);
-  RequestGate gate(*keys, log, metrics);
+  RequestGate gate(*keys, queue, log, metrics);
 
   const http::HealthChecks checks = {[&] { return health.not_ready(); }, [&] { return health.not_alive(); },
                                      [&] { return queue.depth(); }};

@@ -48,6 +48,7 @@ ExtractionEvents counted_events(Metrics& metrics, Log& log) {
           .computed =
               [&metrics, &log](const Extraction::Identity& identity, const ExtractionTimings& timings) {
                 std::vector<LogField> fields = {{"extraction", identity.id}, {"volume", identity.volume}};
+                if (!identity.asked_by.empty()) fields.push_back({"request_id", identity.asked_by});
                 for (const Stage& stage : kStages) {
                   metrics.observe("geosis_extraction_stage_seconds", {{"stage", stage.name}}, timings.*stage.seconds);
                   fields.push_back({stage.name, timings.*stage.seconds});

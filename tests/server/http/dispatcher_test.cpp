@@ -94,6 +94,7 @@ class Doorkeeper final : public Middleware {
     return std::nullopt;
   }
   void answered(const Answered& answered) override { told.push_back(answered); }
+  int retry_after_seconds() const override { return 17; }
 
   std::vector<Answered> told;
 };
@@ -119,6 +120,14 @@ TEST(Dispatcher, AsksTheMiddlewareBeforeTheHandler) {
   // What nobody answers needs no key.
   EXPECT_EQ(answer_of(dispatcher, "GET", "/nothing").status, 404);
   EXPECT_EQ(answer_of(dispatcher, "OPTIONS", "/things/1.a").status, 204);
+}
+
+TEST(Dispatcher, SaysWhenToComeAgainAsTheMiddlewareDoes) {
+  Doorkeeper keeper;
+  const Dispatcher dispatcher = guarded_dispatcher(keeper);
+  EXPECT_EQ(header_of(dispatcher.refuse({}, {503, "full"}), "Retry-After"), "17");
+  EXPECT_EQ(header_of(dispatcher.refuse({}, {429, "too much"}), "Retry-After"), "17");
+  EXPECT_EQ(header_of(dispatcher.refuse({}, {404, "nothing"}), "Retry-After"), "");
 }
 
 TEST(Dispatcher, TellsTheMiddlewareWhatBecameOfARequest) {

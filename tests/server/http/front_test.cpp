@@ -3,8 +3,10 @@
 #include <chrono>
 #include <deque>
 #include <future>
+#include <mutex>
 #include <stdexcept>
 #include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -464,6 +466,53 @@ TEST_F(FrontTest, ForgetsPendingAnswersOfClientsThatLeave) {
   EXPECT_TRUE(holds_soon([&] { return promise_->is_destroyed.load(); }));
   promise_->keep();  // a bell that rings for nobody
   EXPECT_EQ(body_of(get("/hello")), "hello");
+}
+
+/// Remembers what it is told.
+class Bystander final : public Middleware {
+ public:
+  std::optional<Refusal> admit(Request&) override { return std::nullopt; }
+  void answered(const Answered& answered) override {
+    const std::lock_guard lock(mutex_);
+    told_.push_back(answered);
+  }
+  std::vector<Answered> told() const {
+    const std::lock_guard lock(mutex_);
+    return told_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<Answered> told_;
+};
+
+TEST_F(FrontTest, TellsOfClientsThatLeaveBeforeTheirPendingAnswer) {
+  Bystander bystander;
+  FrontOptions options;
+  options.middleware = &bystander;
+  start(options);
+  RawClient leaver(port_), stayer(port_);
+  leaver.send("GET /promise HTTP/1.1\r\nHost: a\r\nX-Request-Id: leaver\r\n\r\n");
+  EXPECT_TRUE(holds_soon([&] {
+    const std::lock_guard lock(promise_->mutex);
+    return promise_->bell != nullptr;
+  }));
+  EXPECT_TRUE(bystander.told().empty());
+  leaver.close();
+  ASSERT_TRUE(holds_soon([&] { return bystander.told().size() == 1; }));
+  const Answered left = bystander.told().front();
+  EXPECT_EQ(left.status, 499);
+  EXPECT_EQ(left.request_id + " " + left.route, "leaver /promise");
+  EXPECT_EQ(left.bytes_out, 0U);
+  EXPECT_FALSE(left.is_complete);
+  EXPECT_GT(left.duration.count(), 0);
+  stayer.send("GET /promise HTTP/1.1\r\nHost: a\r\n\r\n");
+  promise_->keep();
+  EXPECT_EQ(body_of(stayer.read_answer()), "kept");
+  ASSERT_TRUE(holds_soon([&] { return bystander.told().size() == 2; }));
+  EXPECT_EQ(bystander.told().back().status, 200);
+  EXPECT_TRUE(bystander.told().back().is_complete);
+  front_.reset();  // before its middleware
 }
 
 TEST_F(FrontTest, BreaksTheConnectionWhenAStreamFailsOrIsShort) {

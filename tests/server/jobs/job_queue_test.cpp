@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -58,6 +59,24 @@ TEST(JobQueue, RunsWhatIsSubmitted) {
   ASSERT_TRUE((*job)->wait_for(kLong));
   EXPECT_EQ((*job)->status().state, JobState::done);
   EXPECT_EQ((*job)->status().stage, "work");
+}
+
+TEST(JobQueue, ExpectsAWaitAsLongAsItsJobsTake) {
+  JobQueue queue(2, 10);
+  EXPECT_EQ(queue.expected_wait().count(), 0);
+  const auto nap = [](Job&) -> Result<void> {
+    std::this_thread::sleep_for(100ms);
+    return {};
+  };
+  ASSERT_TRUE(queue.submit(Priority::batch, nap).value()->wait_for(kLong));
+  EXPECT_EQ(queue.expected_wait().count(), 0);  // nothing waits
+  for (int i = 0; i < 2; ++i) wait_until_running(*queue.submit(Priority::batch, run_until_cancelled).value());
+  std::vector<std::shared_ptr<Job>> waiting;
+  for (int i = 0; i < 6; ++i) waiting.push_back(queue.submit(Priority::batch, nap).value());
+  EXPECT_GE(queue.expected_wait().count(), 0.3);  // 6 jobs of 100 ms for 2 workers
+  EXPECT_LT(queue.expected_wait().count(), 60);
+  queue.stop();
+  EXPECT_EQ(queue.expected_wait().count(), 0);
 }
 
 TEST(JobQueue, RunsAsManyJobsAtATimeAsItHasWorkers) {

@@ -48,11 +48,14 @@ Window::Stored Window::store(std::span<WorkingVertex> vertices, std::span<LocalT
     place[v] = static_cast<std::int32_t>(stored.vertices);
     vertices[stored.vertices++] = state_.vertices[v];
   }
+  // Each triangle once, at its lowest vertex, without a branch that could go either way.
+  const auto all = static_cast<std::size_t>(state_.triangles);
   for (std::size_t v = 0; v < state_.vertices.size(); ++v) {
     for (const auto [a, b] : state_.rings.of(static_cast<LocalVertex>(v))) {
-      if (v > a || v > b) continue;  // each triangle once, at its lowest vertex
-      triangles[stored.triangles++] = {static_cast<LocalVertex>(place[v]), static_cast<LocalVertex>(place[a]),
-                                       static_cast<LocalVertex>(place[b])};
+      if (stored.triangles == all) return stored;
+      triangles[stored.triangles] = {static_cast<LocalVertex>(place[v]), static_cast<LocalVertex>(place[a]),
+                                     static_cast<LocalVertex>(place[b])};
+      stored.triangles += static_cast<std::size_t>((v < a) & (v < b));
     }
   }
   return stored;

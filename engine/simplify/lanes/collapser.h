@@ -61,9 +61,10 @@ class Collapser {
 
   bool is_free(LocalVertex u) const { return !vertices_[u].locked && w_.rings.degree(u) <= kMaxDegree; }
 
-  /// Edges on their way to the queue, eight at a time.
+  /// Edges on their way to the queue.
   struct Batch {
-    LocalVertex u[kLanes], v[kLanes];
+    static constexpr int kSize = 128;
+    LocalVertex u[kSize + kMaxDegree + 1], v[kSize + kMaxDegree + 1];
     int count = 0;
   };
 
@@ -75,32 +76,48 @@ class Collapser {
     for (std::size_t i = 0; i < w_.vertices.size(); ++i) {
       const auto u = static_cast<LocalVertex>(i);
       if (!is_free(u)) continue;
-      const Neighbours around = neighbours_of(u, vertices_[u].on_boundary, w_.rings,
-                                              [&](LocalVertex v) { return v > u && !vertices_[v].locked; });
-      for (int k = 0; k < around.count; ++k) {
-        batch.u[batch.count] = u;
-        batch.v[batch.count] = around.ids[k];
-        if (++batch.count == kLanes) queue_batch(batch);
+      if (vertices_[u].on_boundary) {
+        const Neighbours around = neighbours_of(u, true, w_.rings);
+        for (const LocalVertex v : around) add_edge(batch, u, v);
+      } else {
+        for (const RingTriangle t : w_.rings.of(u)) add_edge(batch, u, t.a);
       }
+      if (batch.count >= Batch::kSize) queue_batch(batch, batch.count / kLanes * kLanes);
     }
-    if (batch.count > 0) queue_batch(batch);
+    queue_batch(batch, batch.count);
   }
 
-  void cost_of(const Batch& batch, float (&costs)[kLanes]) const {
+  /// Each edge once. Without a branch: which way it would go is anybody's guess.
+  HWY_INLINE void add_edge(Batch& batch, LocalVertex u, LocalVertex v) const {
+    batch.u[batch.count] = u;
+    batch.v[batch.count] = v;
+    batch.count += static_cast<int>(v > u) & static_cast<int>(!vertices_[v].locked);
+  }
+
+  /// Queues the first `count` edges and keeps the others.
+  void queue_batch(Batch& batch, int count) {
+    for (int first = 0; first < count; first += kLanes) {
+      const int size = std::min(kLanes, count - first);
+      float costs[kLanes];
+      cost_of(batch.u + first, batch.v + first, size, costs);
+      for (int k = 0; k < size; ++k) push(batch.u[first + k], batch.v[first + k], costs[k]);
+    }
+    for (int k = count; k < batch.count; ++k) {
+      batch.u[k - count] = batch.u[k];
+      batch.v[k - count] = batch.v[k];
+    }
+    batch.count -= count;
+  }
+
+  /// Of up to eight edges; what lies behind is anything.
+  void cost_of(const LocalVertex* from, const LocalVertex* to, int count, float (&costs)[kLanes]) const {
     const WorkingVertex *u[kLanes], *v[kLanes];
     for (int k = 0; k < kLanes; ++k) {
-      const int filled = k < batch.count ? k : 0;
-      u[k] = &vertices_[batch.u[filled]];
-      v[k] = &vertices_[batch.v[filled]];
+      const int filled = k < count ? k : 0;
+      u[k] = &vertices_[from[filled]];
+      v[k] = &vertices_[to[filled]];
     }
     edge_costs(u, v, costs, rules_.placement);
-  }
-
-  void queue_batch(Batch& batch) {
-    float costs[kLanes];
-    cost_of(batch, costs);
-    for (int k = 0; k < batch.count; ++k) push(batch.u[k], batch.v[k], costs[k]);
-    batch.count = 0;
   }
 
   void queue_edges_around(LocalVertex u) {
@@ -179,19 +196,20 @@ class Collapser {
   /// u == v when none was found.
   QueuedEdge cheapest_of_random(RandomEdges& random) {
     static_assert(kChoices == kLanes);
-    Batch batch;
+    LocalVertex us[kLanes], vs[kLanes];
+    int count = 0;
     for (int i = 0; i < kChoices; ++i) {
       LocalVertex u, v;
       if (!random.draw(w_.rings, u, v)) break;
       if (!is_free(u) || !is_free(v)) continue;
-      batch.u[batch.count] = u;
-      batch.v[batch.count++] = v;
+      us[count] = u;
+      vs[count++] = v;
     }
-    if (batch.count == 0) return {};
+    if (count == 0) return {};
     float costs[kLanes];
-    cost_of(batch, costs);
-    const float* least = std::min_element(costs, costs + batch.count);
-    return {batch.u[least - costs], batch.v[least - costs], 0, 0};
+    cost_of(us, vs, count, costs);
+    const float* least = std::min_element(costs, costs + count);
+    return {us[least - costs], vs[least - costs], 0, 0};
   }
 
   /// weight    of the planes whose squared distances the cost sums up: an area.

@@ -6,6 +6,7 @@
 #define GEOSIS_SIMPLIFY_LANES_COLLAPSER_H
 #endif
 
+#include <bit>
 #include <limits>
 #include <utility>
 
@@ -133,9 +134,15 @@ class Collapser {
     }
     float least = costs[0];
     for (int k = 1; k < around.count; ++k) least = costs[k] < least ? costs[k] : least;
-    const float limit = queue_limit(least);
-    for (int k = 0; k < around.count; ++k) {
-      if (costs[k] <= limit) push(u, around.ids[k], costs[k]);
+    const Float8 limit = all8(queue_limit(least));
+    for (int first = 0; first < around.count; first += kLanes) {
+      Float8 group;
+      std::memcpy(&group, costs + first, sizeof(group));
+      std::uint32_t wanted = bits_of((group <= limit) & lanes_below(first, around.count));
+      for (; wanted != 0; wanted &= wanted - 1) {
+        const int k = first + std::countr_zero(wanted);
+        push(u, around.ids[k], costs[k]);
+      }
     }
   }
 

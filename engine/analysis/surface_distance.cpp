@@ -1,6 +1,7 @@
 #include "engine/analysis/surface_distance.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <vector>
 
@@ -33,38 +34,56 @@ Partial measure_chunk(const SurfaceSamples& samples, std::size_t first, std::siz
   return partial;
 }
 
-OneSided measure_one_side(const SurfaceSamples& from, const TriangleGrid& to, int threads) {
+Error cancelled() {
+  return {ErrorCode::cancelled, "measuring a distance was cancelled"};
+}
+
+Result<OneSided> measure_one_side(const SurfaceSamples& from, const TriangleGrid& to, int threads,
+                                  const Progress& progress) {
+  if (!to.is_built()) return cancelled();
   const std::size_t count = from.points.size();
   std::vector<Partial> partials((count + kChunk - 1) / kChunk);
+  std::atomic<bool> is_cancelled = false;
   parallel_for(partials.size(), threads, [&](std::size_t chunk) {
+    if (is_cancelled || progress.cancelled()) {
+      is_cancelled = true;
+      return;
+    }
     partials[chunk] = measure_chunk(from, chunk * kChunk, std::min(count, (chunk + 1) * kChunk), to);
   });
+  if (is_cancelled) return cancelled();
   Partial total;
   for (const Partial& partial : partials) {
     total.sum += partial.sum;
     total.max = std::max(total.max, partial.max);
   }
-  return {total.sum / static_cast<double>(count - from.vertices), total.max};
+  return OneSided{total.sum / static_cast<double>(count - from.vertices), total.max};
 }
 
 }  // namespace
 
-ReferenceSurface::ReferenceSurface(const IndexedMesh& mesh, const DistanceOptions& options)
-    : options_(options), samples_(sample_surface(mesh, static_cast<std::size_t>(options.samples))), grid_(mesh) {}
+ReferenceSurface::ReferenceSurface(const IndexedMesh& mesh, const DistanceOptions& options, const Progress& progress)
+    : options_(options),
+      samples_(sample_surface(mesh, static_cast<std::size_t>(options.samples), progress)),
+      grid_(mesh, progress) {}
 
-SurfaceDistance ReferenceSurface::measure(const IndexedMesh& other) const {
-  if (other.triangles.empty()) return {};
-  const SurfaceSamples others = sample_surface(other, static_cast<std::size_t>(options_.samples));
-  const OneSided away = measure_one_side(samples_, TriangleGrid(other), options_.threads);
-  const OneSided back = measure_one_side(others, grid_, options_.threads);
-  return {.mean_voxels = (away.mean + back.mean) / 2,
-          .max_voxels = std::max(away.max, back.max),
-          .samples = static_cast<std::int64_t>(samples_.points.size() + others.points.size())};
+Result<SurfaceDistance> ReferenceSurface::measure(const IndexedMesh& other, const Progress& progress) const {
+  if (other.triangles.empty()) return SurfaceDistance{};
+  if (!samples_) return samples_.error();
+  const auto others = sample_surface(other, static_cast<std::size_t>(options_.samples), progress);
+  if (!others) return others.error();
+  const auto away = measure_one_side(*samples_, TriangleGrid(other, progress), options_.threads, progress);
+  if (!away) return away.error();
+  const auto back = measure_one_side(*others, grid_, options_.threads, progress);
+  if (!back) return back.error();
+  return SurfaceDistance{.mean_voxels = (away->mean + back->mean) / 2,
+                         .max_voxels = std::max(away->max, back->max),
+                         .samples = static_cast<std::int64_t>(samples_->points.size() + others->points.size())};
 }
 
 SurfaceDistance measure_distance(const IndexedMesh& a, const IndexedMesh& b, const DistanceOptions& options) {
   if (a.triangles.empty()) return {};
-  return ReferenceSurface(a, options).measure(b);
+  return *ReferenceSurface(a, options).measure(b);
 }
 
 }  // namespace geosis

@@ -4,6 +4,8 @@
 
 #include "engine/analysis/surface_samples.h"
 #include "engine/analysis/triangle_grid.h"
+#include "engine/base/progress.h"
+#include "engine/base/result.h"
 #include "engine/mesh/indexed_mesh.h"
 
 namespace geosis {
@@ -30,14 +32,14 @@ class ReferenceSurface {
  public:
   /// mesh   at least one triangle; kept by reference.
   /// cost   O(triangles): a grid of cells, 20 bytes a triangle.
-  ReferenceSurface(const IndexedMesh& mesh, const DistanceOptions& options);
+  ReferenceSurface(const IndexedMesh& mesh, const DistanceOptions& options, const Progress& progress = NoProgress());
 
-  /// All zero when the other mesh has no triangles.
-  SurfaceDistance measure(const IndexedMesh& other) const;
+  /// All zero when the other mesh has no triangles. errors: cancelled: this, or the preparation.
+  Result<SurfaceDistance> measure(const IndexedMesh& other, const Progress& progress = NoProgress()) const;
 
  private:
   DistanceOptions options_;
-  SurfaceSamples samples_;
+  Result<SurfaceSamples> samples_;
   TriangleGrid grid_;
 };
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "engine/base/progress.h"
+#include "engine/base/result.h"
 #include "engine/mesh/indexed_mesh.h"
 #include "engine/volume/geometry.h"
 
@@ -14,5 +16,8 @@ struct SurfaceMeasures {
 /// Sums run in double, in the order of the triangles, on positions relative to the mesh's first vertex: an origin
 /// thousands of kilometres away costs no digits.
 SurfaceMeasures measure_surface(const IndexedMesh& mesh, const GridGeometry& geometry);
+/// The same. errors: cancelled.
+Result<SurfaceMeasures> measure_surface(const IndexedMesh& mesh, const GridGeometry& geometry,
+                                        const Progress& progress);
 
 }  // namespace geosis

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "engine/base/progress.h"
+#include "engine/base/result.h"
 #include "engine/base/vec3.h"
 #include "engine/mesh/indexed_mesh.h"
 
@@ -19,5 +21,7 @@ struct SurfaceSamples {
 ///
 /// mesh   at least one triangle; a triangle without area gets no point unless all have none.
 SurfaceSamples sample_surface(const IndexedMesh& mesh, std::size_t count);
+/// The same. errors: cancelled.
+Result<SurfaceSamples> sample_surface(const IndexedMesh& mesh, std::size_t count, const Progress& progress);
 
 }  // namespace geosis

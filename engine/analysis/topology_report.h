@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "engine/base/progress.h"
+#include "engine/base/result.h"
 #include "engine/mesh/indexed_mesh.h"
 
 namespace geosis {
@@ -19,7 +21,9 @@ struct TopologyReport {
 };
 
 /// mesh   any mesh with indices in range.
-/// cost   O(triangles log valence) for a manifold, else O(triangles log triangles); no hash map; 36 bytes a triangle.
+/// cost   O(triangles log valence); no hash map; 36 bytes a triangle.
 TopologyReport report_topology(const IndexedMesh& mesh);
+/// The same. errors: cancelled.
+Result<TopologyReport> report_topology(const IndexedMesh& mesh, const Progress& progress);
 
 }  // namespace geosis

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "engine/analysis/triangle_distance.h"
+#include "engine/base/stretches.h"
 
 namespace geosis {
 namespace {
@@ -42,40 +43,57 @@ int largest_axis(Vec3d v) {
   return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
 }
 
-double mean_area(const IndexedMesh& mesh) {
-  double twice_area = 0;
-  for (const Triangle& triangle : mesh.triangles) {
-    twice_area += norm(corners_of(mesh, triangle).normal());
+/// Calls visit(t) for every triangle, in order. False: cancelled.
+template <class Visit>
+bool for_each_triangle(const IndexedMesh& mesh, const Progress& progress, const Visit& visit) {
+  Stretches stretches(mesh.triangles.size(), progress);
+  while (stretches.next()) {
+    for (std::size_t t = stretches.begin(); t < stretches.end(); ++t) visit(t);
   }
+  return !stretches.are_cancelled();
+}
+
+/// Nothing when it is cancelled.
+std::optional<double> mean_area(const IndexedMesh& mesh, const Progress& progress) {
+  double twice_area = 0;
+  const bool is_done = for_each_triangle(
+      mesh, progress, [&](std::size_t t) { twice_area += norm(corners_of(mesh, mesh.triangles[t]).normal()); });
+  if (!is_done) return std::nullopt;
   return twice_area / 2 / static_cast<double>(mesh.triangles.size());
 }
 
 }  // namespace
 
-TriangleGrid::TriangleGrid(const IndexedMesh& mesh)
+TriangleGrid::TriangleGrid(const IndexedMesh& mesh, const Progress& progress)
     : mesh_(mesh), low_{kInfinity, kInfinity, kInfinity}, high_{-kInfinity, -kInfinity, -kInfinity} {
-  for (const Triangle& triangle : mesh.triangles) {
-    const Corners corners = corners_of(mesh, triangle);
+  is_built_ = find_box(progress) && choose_cell_size(progress) && sort_triangles_into_cells(progress);
+}
+
+bool TriangleGrid::find_box(const Progress& progress) {
+  return for_each_triangle(mesh_, progress, [this](std::size_t t) {
+    const Corners corners = corners_of(mesh_, mesh_.triangles[t]);
     low_ = lower(low_, corners.low());
     high_ = upper(high_, corners.high());
-  }
-  choose_cell_size();
-  sort_triangles_into_cells();
+  });
 }
 
 /// Cells about as wide as a triangle, but not many more cells than triangles; wider while slivers that cross many cells
 /// fill the lists.
-void TriangleGrid::choose_cell_size() {
+bool TriangleGrid::choose_cell_size(const Progress& progress) {
+  const auto area = mean_area(mesh_, progress);
+  if (!area) return false;
   const auto triangles = static_cast<double>(mesh_.triangles.size());
   const Vec3d size = high_ - low_;
-  cell_size_ = std::max(2 * std::sqrt(mean_area(mesh_)), 1e-3);
+  cell_size_ = std::max(2 * std::sqrt(*area), 1e-3);
   const auto cells_along = [&](int axis) { return std::floor(size[axis] / cell_size_) + 1; };
   while (cells_along(0) * cells_along(1) * cells_along(2) > 2 * triangles + kFreeCells) cell_size_ *= 1.25;
   const double limit = std::min(16 * (triangles + kFreeCells), 4e9);  // first_ holds 32-bit numbers
   for (;;) {
     cells_per_unit_ = 1 / cell_size_;
     for (int axis = 0; axis < 3; ++axis) shape_[axis] = static_cast<std::int32_t>(cells_along(axis));
-    if (static_cast<double>(count_triangles_in_cells()) <= limit) return;
+    const auto count = count_triangles_in_cells(progress);
+    if (!count) return false;
+    if (static_cast<double>(*count) <= limit) return true;
     cell_size_ *= 2;
   }
 }
@@ -145,23 +163,26 @@ void TriangleGrid::for_each_cell_of(const Triangle& triangle, const Visit& visit
 }
 
 /// Leaves in first_[n] how many triangles cell n holds.
-std::size_t TriangleGrid::count_triangles_in_cells() {
+std::optional<std::size_t> TriangleGrid::count_triangles_in_cells(const Progress& progress) {
   first_.assign(static_cast<std::size_t>(shape_[0]) * shape_[1] * shape_[2] + 1, 0);
   std::size_t total = 0;
-  for (const Triangle& triangle : mesh_.triangles) {
-    for_each_cell_of(triangle, [&](std::size_t cell) { ++first_[cell], ++total; });
-  }
+  const bool is_done = for_each_triangle(mesh_, progress, [&](std::size_t t) {
+    for_each_cell_of(mesh_.triangles[t], [&](std::size_t cell) { ++first_[cell], ++total; });
+  });
+  if (!is_done) return std::nullopt;
   return total;
 }
 
 /// Counts become ends; filling from the last triangle on turns each end into a start.
-void TriangleGrid::sort_triangles_into_cells() {
+bool TriangleGrid::sort_triangles_into_cells(const Progress& progress) {
   std::partial_sum(first_.begin(), first_.end(), first_.begin());
   triangles_.resize(first_.back());
-  for (std::size_t t = mesh_.triangles.size(); t-- > 0;) {
+  const std::size_t last = mesh_.triangles.size() - 1;
+  return for_each_triangle(mesh_, progress, [&](std::size_t from_last) {
+    const std::size_t t = last - from_last;
     for_each_cell_of(mesh_.triangles[t],
                      [&](std::size_t cell) { triangles_[--first_[cell]] = static_cast<std::int32_t>(t); });
-  }
+  });
 }
 
 std::int32_t TriangleGrid::cell_along(int axis, double coordinate) const {

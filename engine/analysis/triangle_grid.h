@@ -2,8 +2,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "engine/base/progress.h"
 #include "engine/base/vec3.h"
 #include "engine/mesh/indexed_mesh.h"
 
@@ -20,7 +22,10 @@ struct NearestTriangle {
 /// cost   building O(triangles); cells are a few triangles wide, at most about two cells a triangle and 2,000.
 class TriangleGrid {
  public:
-  explicit TriangleGrid(const IndexedMesh& mesh);
+  explicit TriangleGrid(const IndexedMesh& mesh, const Progress& progress = NoProgress());
+
+  /// False: building it was cancelled, and nothing can be found in it.
+  bool is_built() const { return is_built_; }
 
   /// The triangle nearest to the point, anywhere in space, and the exact squared distance to it.
   /// guess   a triangle that is likely near, to start from; -1 when there is none.
@@ -30,9 +35,12 @@ class TriangleGrid {
   using Cell = std::array<std::int32_t, 3>;
   class PlaneColumns;
 
-  void choose_cell_size();
-  std::size_t count_triangles_in_cells();
-  void sort_triangles_into_cells();
+  // Of building, each false when it is cancelled.
+  bool find_box(const Progress& progress);
+  bool choose_cell_size(const Progress& progress);
+  bool sort_triangles_into_cells(const Progress& progress);
+  /// Nothing when it is cancelled.
+  std::optional<std::size_t> count_triangles_in_cells(const Progress& progress);
   template <class Visit>
   void for_each_cell_of(const Triangle& triangle, const Visit& visit) const;
 
@@ -54,6 +62,7 @@ class TriangleGrid {
   Cell shape_{1, 1, 1};
   std::vector<std::uint32_t> first_;     ///< (cells + 1) where each cell's triangles start
   std::vector<std::int32_t> triangles_;  ///< the cells' triangles, cell after cell
+  bool is_built_ = false;
 };
 
 }  // namespace geosis

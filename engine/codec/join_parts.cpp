@@ -128,7 +128,7 @@ class Joiner {
 
 }  // namespace
 
-Result<DecodedLevel> join_parts(std::vector<MeshPart> parts) {
+Result<DecodedLevel> join_parts(std::vector<MeshPart> parts, const Progress& progress) {
   if (parts.size() == 1 && parts[0].seams.empty()) {
     return DecodedLevel{std::move(parts[0].mesh), std::move(parts[0].attributes)};
   }
@@ -139,6 +139,7 @@ Result<DecodedLevel> join_parts(std::vector<MeshPart> parts) {
   }
   Joiner joiner(vertices);
   for (std::size_t part = 0; part < parts.size(); ++part) {
+    if (progress.cancelled()) return Error{ErrorCode::cancelled, "the joining of a level's parts was cancelled"};
     if (auto added = joiner.add(parts[part], static_cast<std::int32_t>(part)); !added) return added.error();
     parts[part] = {};  // its memory is not needed any more
   }

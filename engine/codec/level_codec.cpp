@@ -72,7 +72,7 @@ Result<DecodedLevel> decode_level(const std::vector<std::span<const std::byte>>&
   auto decoded =
       make_parts<MeshPart>(parts.size(), threads, progress, [&](std::size_t part) { return decode_part(parts[part]); });
   if (!decoded) return std::move(decoded).error();
-  return join_parts(*std::move(decoded));
+  return join_parts(*std::move(decoded), progress);
 }
 
 }  // namespace geosis

@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/base/stretches.h"
+
 namespace geosis {
 namespace {
 
@@ -23,6 +25,12 @@ std::int32_t fan_size(const CornerTable& table, std::int32_t c) {
   }
 }
 
+Error fan_fault(std::size_t vertex, std::int32_t size, std::int32_t valence) {
+  return {ErrorCode::invalid_argument, "vertex " + std::to_string(vertex) +
+                                           " has more than one fan: " + std::to_string(size) + " of its " +
+                                           std::to_string(valence) + " triangles are connected across edges"};
+}
+
 /// Triangles on the same vertices meet across all three edges once each edge has at most two triangles, so it is enough
 /// to compare what lies across two of them.
 Result<void> check_duplicates(const CornerTable& table) {
@@ -40,21 +48,27 @@ Result<void> check_duplicates(const CornerTable& table) {
 
 }  // namespace
 
-Result<void> check_fans(const CornerTable& table, std::size_t vertices) {
+Result<void> check_fans(const CornerTable& table, std::size_t vertices, const Progress& progress) {
   std::vector<std::int32_t> some_corner(vertices, CornerTable::kNoCorner);
   std::vector<std::int32_t> valence(vertices, 0);
-  for (std::int32_t c = 0; c < table.corners(); ++c) {
-    some_corner[table.vertex[c]] = c;
-    ++valence[table.vertex[c]];
+  const Error cancelled = {ErrorCode::cancelled, "checking the fans of a mesh was cancelled"};
+  Stretches corners(table.vertex.size(), progress);
+  while (corners.next()) {
+    for (std::size_t c = corners.begin(); c < corners.end(); ++c) {
+      some_corner[table.vertex[c]] = static_cast<std::int32_t>(c);
+      ++valence[table.vertex[c]];
+    }
   }
-  for (std::size_t v = 0; v < vertices; ++v) {
-    if (valence[v] == 0) continue;
-    const std::int32_t size = fan_size(table, some_corner[v]);
-    if (size == valence[v]) continue;
-    return Error{ErrorCode::invalid_argument, "vertex " + std::to_string(v) +
-                                                  " has more than one fan: " + std::to_string(size) + " of its " +
-                                                  std::to_string(valence[v]) + " triangles are connected across edges"};
+  if (corners.are_cancelled()) return cancelled;
+  Stretches fans(vertices, progress);
+  while (fans.next()) {
+    for (std::size_t v = fans.begin(); v < fans.end(); ++v) {
+      if (valence[v] == 0) continue;
+      const std::int32_t size = fan_size(table, some_corner[v]);
+      if (size != valence[v]) return fan_fault(v, size, valence[v]);
+    }
   }
+  if (fans.are_cancelled()) return cancelled;
   return {};
 }
 

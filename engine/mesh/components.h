@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/base/progress.h"
+#include "engine/base/result.h"
 #include "engine/mesh/corner_table.h"
 #include "engine/mesh/indexed_mesh.h"
 
@@ -19,6 +21,8 @@ struct Components {
 /// mesh     any mesh with indices in range; it need not be manifold.
 /// cost     O(triangles), near enough; 8 bytes a vertex.
 Components find_components(const IndexedMesh& mesh);
+/// The same. errors: cancelled.
+Result<Components> find_components(const IndexedMesh& mesh, const Progress& progress);
 
 /// Counts of one component (or of a whole mesh, by adding them up).
 struct ComponentTopology {
@@ -34,5 +38,8 @@ struct ComponentTopology {
 
 /// One entry a component. The table must be that of the mesh.
 std::vector<ComponentTopology> measure_components(const Components& components, const CornerTable& table);
+/// The same. errors: cancelled.
+Result<std::vector<ComponentTopology>> measure_components(const Components& components, const CornerTable& table,
+                                                          const Progress& progress);
 
 }  // namespace geosis

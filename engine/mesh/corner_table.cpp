@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "engine/base/stretches.h"
+
 namespace geosis {
 namespace {
 
@@ -27,6 +29,10 @@ Error fault(std::string message) {
   return {ErrorCode::invalid_argument, std::move(message)};
 }
 
+Error cancelled() {
+  return {ErrorCode::cancelled, "building a corner table was cancelled"};
+}
+
 bool is_sound(const Triangle& triangle, std::size_t vertices) {
   const auto [a, b, c] = triangle;
   const auto in_range = [&](std::int32_t v) { return static_cast<std::uint32_t>(v) < vertices; };
@@ -44,13 +50,17 @@ Error triangle_fault(const Triangle& triangle, std::size_t index, std::size_t ve
   return fault(name + " names vertex " + std::to_string(a == b ? a : c) + " twice");
 }
 
-Result<void> fill_vertices(const IndexedMesh& mesh, CornerTable& table) {
+Result<void> fill_vertices(const IndexedMesh& mesh, const Progress& progress, CornerTable& table) {
   table.vertex.resize(mesh.triangles.size() * 3);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Triangle& triangle = mesh.triangles[t];
-    if (!is_sound(triangle, mesh.positions.size())) return triangle_fault(triangle, t, mesh.positions.size());
-    std::copy_n(triangle.begin(), 3, &table.vertex[3 * t]);
+  Stretches stretches(mesh.triangles.size(), progress);
+  while (stretches.next()) {
+    for (std::size_t t = stretches.begin(); t < stretches.end(); ++t) {
+      const Triangle& triangle = mesh.triangles[t];
+      if (!is_sound(triangle, mesh.positions.size())) return triangle_fault(triangle, t, mesh.positions.size());
+      std::copy_n(triangle.begin(), 3, &table.vertex[3 * t]);
+    }
   }
+  if (stretches.are_cancelled()) return cancelled();
   return {};
 }
 
@@ -63,10 +73,22 @@ std::pair<std::int32_t, std::int32_t> ends_of_edge(const CornerTable& table, std
   return std::minmax({table.vertex[CornerTable::next(c)], table.vertex[CornerTable::previous(c)]});
 }
 
+/// Calls visit(c) for every corner. False: cancelled.
+template <class Visit>
+bool for_each_corner(const CornerTable& table, const Progress& progress, const Visit& visit) {
+  Stretches stretches(table.vertex.size(), progress);
+  while (stretches.next()) {
+    for (std::size_t c = stretches.begin(); c < stretches.end(); ++c) visit(static_cast<std::int32_t>(c));
+  }
+  return !stretches.are_cancelled();
+}
+
 /// (vertices + 1) How many corners face edges whose lower end is below vertex v.
-std::vector<std::uint32_t> count_edges_below(const CornerTable& table, std::size_t vertices) {
+Result<std::vector<std::uint32_t>> count_edges_below(const CornerTable& table, std::size_t vertices,
+                                                     const Progress& progress) {
   std::vector<std::uint32_t> below(vertices + 1, 0);
-  for (std::int32_t c = 0; c < table.corners(); ++c) ++below[ends_of_edge(table, c).first + 1];
+  const auto count = [&](std::int32_t c) { ++below[ends_of_edge(table, c).first + 1]; };
+  if (!for_each_corner(table, progress, count)) return cancelled();
   for (std::size_t v = 1; v < below.size(); ++v) below[v] += below[v - 1];
   return below;
 }
@@ -83,17 +105,18 @@ struct EdgeGroups {
 };
 
 /// Of the lower vertices begin ... end - 1.
-EdgeGroups group_edges(const CornerTable& table, const std::vector<std::uint32_t>& below, std::size_t begin,
-                       std::size_t end) {
+Result<EdgeGroups> group_edges(const CornerTable& table, const std::vector<std::uint32_t>& below, std::size_t begin,
+                               std::size_t end, const Progress& progress) {
   EdgeGroups groups{static_cast<std::int32_t>(begin), {}, std::vector<EdgeEntry>(below[end] - below[begin])};
   groups.first.reserve(end - begin + 1);
   for (std::size_t v = begin; v <= end; ++v) groups.first.push_back(below[v] - below[begin]);
   std::vector<std::uint32_t> next(groups.first.begin(), groups.first.end() - 1);
-  for (std::int32_t c = 0; c < table.corners(); ++c) {
+  const bool is_done = for_each_corner(table, progress, [&](std::int32_t c) {
     const auto [lower, higher] = ends_of_edge(table, c);
     const std::size_t group = static_cast<std::size_t>(lower) - begin;  // wraps around below begin
     if (group < next.size()) groups.entries[next[group]++] = make_entry(higher, c);
-  }
+  });
+  if (!is_done) return cancelled();
   return groups;
 }
 
@@ -125,28 +148,40 @@ Error edge_fault(std::int32_t lower, std::span<const EdgeEntry> edge) {
                " " + triangle(2) + (edge.size() > 3 ? " ..." : ""));
 }
 
-Result<void> match_edges(EdgeGroups& groups, CornerTable& table) {
-  for (std::size_t group = 0; group < groups.size(); ++group) {
-    const std::span<EdgeEntry> entries = groups.of(group);
-    std::sort(entries.begin(), entries.end());
-    for (std::size_t i = 0; i < entries.size();) {
-      const auto edge = edge_at(entries, i);
-      if (!match(edge, table)) return edge_fault(groups.begin + static_cast<std::int32_t>(group), edge);
-      i += edge.size();
-    }
+Result<void> match_edges_of(EdgeGroups& groups, std::size_t group, CornerTable& table) {
+  const std::span<EdgeEntry> entries = groups.of(group);
+  std::sort(entries.begin(), entries.end());
+  for (std::size_t i = 0; i < entries.size();) {
+    const auto edge = edge_at(entries, i);
+    if (!match(edge, table)) return edge_fault(groups.begin + static_cast<std::int32_t>(group), edge);
+    i += edge.size();
   }
   return {};
 }
 
+Result<void> match_edges(EdgeGroups& groups, const Progress& progress, CornerTable& table) {
+  Stretches stretches(groups.size(), progress);
+  while (stretches.next()) {
+    for (std::size_t group = stretches.begin(); group < stretches.end(); ++group) {
+      if (auto matched = match_edges_of(groups, group, table); !matched) return matched;
+    }
+  }
+  if (stretches.are_cancelled()) return cancelled();
+  return {};
+}
+
 /// In rounds over ranges of lower vertices.
-Result<void> match_all_edges(CornerTable& table, std::size_t vertices) {
-  const std::vector<std::uint32_t> below = count_edges_below(table, vertices);
+Result<void> match_all_edges(CornerTable& table, std::size_t vertices, const Progress& progress) {
+  const auto counted = count_edges_below(table, vertices, progress);
+  if (!counted) return counted.error();
+  const std::vector<std::uint32_t>& below = *counted;
   const std::uint32_t corners_a_round = std::max(kLeastCornersARound, below.back() / kMostRounds + 1);
   for (std::size_t begin = 0; begin < vertices;) {
     const auto past = std::upper_bound(below.begin() + begin + 2, below.end(), below[begin] + corners_a_round);
     const auto end = static_cast<std::size_t>(past - below.begin()) - 1;
-    EdgeGroups groups = group_edges(table, below, begin, end);
-    if (auto matched = match_edges(groups, table); !matched) return matched;
+    auto groups = group_edges(table, below, begin, end, progress);
+    if (!groups) return std::move(groups).error();
+    if (auto matched = match_edges(*groups, progress, table); !matched) return matched;
     begin = end;
   }
   return {};
@@ -154,7 +189,7 @@ Result<void> match_all_edges(CornerTable& table, std::size_t vertices) {
 
 }  // namespace
 
-Result<CornerTable> build_corner_table(const IndexedMesh& mesh) {
+Result<CornerTable> build_corner_table(const IndexedMesh& mesh, const Progress& progress) {
   constexpr std::size_t kMaxIndex = std::numeric_limits<std::int32_t>::max();
   if (mesh.triangles.size() > kMaxIndex / 3 || mesh.positions.size() > kMaxIndex) {
     return Error{ErrorCode::limit_exceeded,
@@ -162,9 +197,10 @@ Result<CornerTable> build_corner_table(const IndexedMesh& mesh) {
                      " vertices; a corner table holds at most " + std::to_string(kMaxIndex / 3) + " triangles"};
   }
   CornerTable table;
-  if (auto filled = fill_vertices(mesh, table); !filled) return std::move(filled).error();
+  if (auto filled = fill_vertices(mesh, progress, table); !filled) return std::move(filled).error();
   table.opposite.assign(table.vertex.size(), CornerTable::kNoCorner);
-  if (auto matched = match_all_edges(table, mesh.positions.size()); !matched) return std::move(matched).error();
+  auto matched = match_all_edges(table, mesh.positions.size(), progress);
+  if (!matched) return std::move(matched).error();
   return table;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/base/progress.h"
 #include "engine/base/result.h"
 #include "engine/mesh/indexed_mesh.h"
 
@@ -45,9 +46,9 @@ struct CornerTable {
 ///
 /// errors   invalid_argument: a vertex index out of range, a triangle with a repeated vertex, an edge in more than two
 ///          triangles, an edge that both its triangles run along in the same direction; the message says where.
-///          limit_exceeded: more corners than 32-bit indices can name.
+///          limit_exceeded: more corners than 32-bit indices can name.  cancelled.
 /// cost     O(triangles log valence), no hash map; 24 bytes a triangle while it runs.
 /// source   Rossignac, Safonova & Szymczak 2001 (the V and O tables).
-Result<CornerTable> build_corner_table(const IndexedMesh& mesh);
+Result<CornerTable> build_corner_table(const IndexedMesh& mesh, const Progress& progress = NoProgress());
 
 }  // namespace geosis

@@ -33,9 +33,15 @@ std::vector<std::size_t> equal_levels(const std::vector<ReconstructedLevel>& lev
 
 }  // namespace
 
-void describe_level(const IndexedMesh& decoded, const CertifyOptions& options, ReconstructedLevel& level) {
-  level.topology = report_topology(decoded);
-  level.measures = measure_surface(decoded, options.space);
+Result<void> describe_level(const IndexedMesh& decoded, const CertifyOptions& options, const Progress& progress,
+                            ReconstructedLevel& level) {
+  const auto topology = report_topology(decoded, progress);
+  if (!topology) return topology.error();
+  const auto measures = measure_surface(decoded, options.space, progress);
+  if (!measures) return measures.error();
+  level.topology = *topology;
+  level.measures = *measures;
+  return {};
 }
 
 /// Whether distances in the space differ from those in voxels.
@@ -44,27 +50,34 @@ bool LevelComparison::is_mapped() const {
 }
 
 void LevelComparison::prepare(TaskBoard& board) {
-  board.add(kComparisonUrgency, [this] { by_index_.emplace(m0_, DistanceOptions{.threads = options_.threads}); });
+  board.add(kComparisonUrgency,
+            [this] { by_index_.emplace(m0_, DistanceOptions{.threads = options_.threads}, progress_); });
   if (is_mapped()) board.add(kComparisonUrgency, [this] { prepare_in_space(); });
-  board.add(kComparisonUrgency, [this] { volume_ = measure_surface(m0_, options_.space).volume; });
+  board.add(kComparisonUrgency, [this] {
+    const auto measures = measure_surface(m0_, options_.space, progress_);
+    if (measures) volume_ = measures->volume;
+  });
 }
 
 void LevelComparison::prepare_in_space() {
   origin_ = options_.space.map(to_double(m0_.positions.front()));
   m0_in_space_ = mapped(m0_, options_.space, origin_);
-  in_space_.emplace(m0_in_space_, DistanceOptions{.threads = options_.threads});
+  in_space_.emplace(m0_in_space_, DistanceOptions{.threads = options_.threads}, progress_);
+}
+
+void LevelComparison::measure(const IndexedMesh& decoded, ReconstructedLevel& level) const {
+  if (const auto distance = by_index_->measure(decoded, progress_)) level.distance = *distance;
 }
 
 void LevelComparison::measure_in_space(const IndexedMesh& decoded, ReconstructedLevel& level) const {
-  const SurfaceDistance distance = in_space_->measure(mapped(decoded, options_.space, origin_));
-  level.space_distance = SpaceDistance{distance.mean_voxels, distance.max_voxels};
+  const auto distance = in_space_->measure(mapped(decoded, options_.space, origin_), progress_);
+  if (distance) level.space_distance = SpaceDistance{distance->mean_voxels, distance->max_voxels};
 }
 
 Result<void> LevelComparison::compare(std::vector<ReconstructedLevel>& levels,
-                                      const std::vector<const IndexedMesh*>& decoded, TaskBoard& board,
-                                      Progress& progress) {
+                                      const std::vector<const IndexedMesh*>& decoded, TaskBoard& board) {
   const auto never = [] { return false; };
-  progress.report("certify", 0);
+  progress_.report("certify", 0);
   const std::vector<std::size_t> equal = equal_levels(levels);
   board.work_until(kComparisonUrgency, never);  // M0 is prepared
   std::vector<std::size_t> measured;
@@ -75,22 +88,22 @@ Result<void> LevelComparison::compare(std::vector<ReconstructedLevel>& levels,
   }
   const std::size_t tasks = measured.size() * (is_mapped() ? 2 : 1);
   const auto add = [&](const std::function<void()>& measure) {
-    board.add(kComparisonUrgency, [this, &progress, measure] {
-      if (!progress.cancelled()) measure();
+    board.add(kComparisonUrgency, [this, measure] {
+      if (!progress_.cancelled()) measure();
       ++ended_;
     });
   };
   for (const std::size_t k : measured) {
     const IndexedMesh& mesh = *decoded[k];
     ReconstructedLevel& level = levels[k];
-    add([this, &mesh, &level] { level.distance = by_index_->measure(mesh); });
+    add([this, &mesh, &level] { measure(mesh, level); });
     if (is_mapped()) add([this, &mesh, &level] { measure_in_space(mesh, level); });
   }
   board.work_until(kComparisonUrgency, [&] {
-    progress.report("certify", tasks == 0 ? 1 : static_cast<double>(ended_) / static_cast<double>(tasks));
+    progress_.report("certify", tasks == 0 ? 1 : static_cast<double>(ended_) / static_cast<double>(tasks));
     return ended_ == tasks;
   });
-  if (progress.cancelled()) return Error{ErrorCode::cancelled, "certifying the levels was cancelled"};
+  if (progress_.cancelled()) return Error{ErrorCode::cancelled, "certifying the levels was cancelled"};
   for (std::size_t k = levels.size(); k-- > 0;) {
     levels[k].distance = levels[equal[k]].distance;
     levels[k].space_distance = levels[equal[k]].space_distance;

@@ -23,8 +23,9 @@ struct CertifyOptions {
   int threads = 1;
 };
 
-/// Topology, area and volume of a level as it decodes.
-void describe_level(const IndexedMesh& decoded, const CertifyOptions& options, ReconstructedLevel& level);
+/// Topology, area and volume of a level as it decodes. errors: cancelled.
+Result<void> describe_level(const IndexedMesh& decoded, const CertifyOptions& options, const Progress& progress,
+                            ReconstructedLevel& level);
 
 /// Of tasks that compare with M0: whatever makes or describes a level goes before.
 inline constexpr int kComparisonUrgency = -1;
@@ -33,8 +34,9 @@ inline constexpr int kComparisonUrgency = -1;
 /// are.
 class LevelComparison {
  public:
-  /// m0 is kept by reference.
-  LevelComparison(const IndexedMesh& m0, const CertifyOptions& options) : m0_(m0), options_(options) {}
+  /// m0 and progress are kept by reference.
+  LevelComparison(const IndexedMesh& m0, const CertifyOptions& options, Progress& progress)
+      : m0_(m0), options_(options), progress_(progress) {}
   LevelComparison(const LevelComparison&) = delete;
   LevelComparison& operator=(const LevelComparison&) = delete;
 
@@ -45,15 +47,18 @@ class LevelComparison {
   ///
   /// errors   cancelled.
   Result<void> compare(std::vector<ReconstructedLevel>& levels, const std::vector<const IndexedMesh*>& decoded,
-                       TaskBoard& board, Progress& progress);
+                       TaskBoard& board);
 
  private:
   bool is_mapped() const;
   void prepare_in_space();
+  // Nothing is filled in when it is cancelled.
+  void measure(const IndexedMesh& decoded, ReconstructedLevel& level) const;
   void measure_in_space(const IndexedMesh& decoded, ReconstructedLevel& level) const;
 
   const IndexedMesh& m0_;
   const CertifyOptions options_;
+  Progress& progress_;
   std::optional<ReferenceSurface> by_index_, in_space_;
   IndexedMesh m0_in_space_;
   Vec3d origin_;  ///< what meshes in the space are relative to: float32 is enough for a body, not for a place on earth

@@ -18,6 +18,10 @@ namespace {
 /// described stays bounded.
 constexpr int kMostInFlight = 2;
 
+Error cancelled() {
+  return {ErrorCode::cancelled, "the encoding of a level was cancelled"};
+}
+
 Error of_part(std::size_t part, const Error& error) {
   if (error.code == ErrorCode::cancelled) return error;
   return {error.code, "part " + std::to_string(part) + ": " + error.message};
@@ -103,6 +107,7 @@ void LevelFinisher::prepare(Work& work) {
   work.level.interpolated_share = interpolated_share(work.level.attributes.reliability);
   if (!options_.keep_reliability) work.level.attributes.reliability.clear();
   if (auto sound = check_level(work.mesh, work.level.attributes, options_.encode); !sound) return end(work, sound);
+  if (progress_.cancelled()) return end(work, cancelled());
   work.plan = plan_parts(work.mesh, options_.encode.max_part_triangles);
   const std::size_t parts = work.plan.parts();
   work.level.encoded.parts.resize(parts);
@@ -116,9 +121,10 @@ void LevelFinisher::prepare(Work& work) {
 
 void LevelFinisher::code_part(Work& work, std::size_t part) {
   work.problems[part] = [&]() -> std::optional<Error> {
-    if (progress_.cancelled()) return Error{ErrorCode::cancelled, "the encoding of a level was cancelled"};
+    if (progress_.cancelled()) return cancelled();
     auto encoded = encode_part(cut_part(work.mesh, work.level.attributes, work.plan, part), options_.encode);
     if (!encoded) return of_part(part, encoded.error());
+    if (progress_.cancelled()) return cancelled();
     auto decoded = decode_part(encoded->bytes);
     if (!decoded) return of_part(part, decoded.error());
     work.level.encoded.parts[part] = *std::move(encoded);
@@ -133,10 +139,12 @@ void LevelFinisher::join_and_describe(Work& work) {
   for (const auto& problem : work.problems) {
     if (problem) return end(work, *problem);
   }
-  auto joined = join_parts(std::move(work.parts));
+  auto joined = join_parts(std::move(work.parts), progress_);
   if (!joined) return end(work, std::move(joined).error());
   work.plan = {};
-  describe_level(joined->mesh, options_.certify, work.level);
+  if (auto described = describe_level(joined->mesh, options_.certify, progress_, work.level); !described) {
+    return end(work, std::move(described));
+  }
   if (&work.mesh != &m0_) work.decoded = std::move(joined->mesh);
   end(work, {});
 }

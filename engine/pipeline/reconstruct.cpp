@@ -76,7 +76,7 @@ Result<void> check_attribute_volume(const ReconstructInput& input, const Reconst
   return Error{ErrorCode::invalid_argument, "the attribute volume has another shape than the volume"};
 }
 
-BuildLodsOptions simplification(const ReconstructOptions& options) {
+BuildLodsOptions simplification(const ReconstructOptions& options, const Progress& progress) {
   BuildLodsOptions build;
   build.levels = options.levels;
   build.strategy = options.strategy;
@@ -84,10 +84,11 @@ BuildLodsOptions simplification(const ReconstructOptions& options) {
   build.seed = options.seed;
   build.threads = options.threads;
   // M0 is prepared once, for all the levels that are measured.
-  build.measure = [reference = std::make_shared<std::optional<ReferenceSurface>>(), threads = options.threads](
-                      const IndexedMesh& m0, const IndexedMesh& level) {
-    if (!*reference) reference->emplace(m0, DistanceOptions{.threads = threads});
-    return (*reference)->measure(level).max_voxels;
+  build.measure = [reference = std::make_shared<std::optional<ReferenceSurface>>(), &progress,
+                   threads = options.threads](const IndexedMesh& m0, const IndexedMesh& level) {
+    if (!*reference) reference->emplace(m0, DistanceOptions{.threads = threads}, progress);
+    const auto distance = (*reference)->measure(level, progress);
+    return distance ? distance->max_voxels : 0;  // who builds the levels learns of the cancellation as well
   };
   return build;
 }
@@ -100,7 +101,7 @@ class Levels {
         body_(std::move(m0.body)),
         levels_(run.options.levels.size()),
         m0_(begins_with_m0(run.options.levels) ? levels_.front().lod.mesh : m0_apart_),
-        comparison_(m0_, run.certify()),
+        comparison_(m0_, run.certify(), run.progress),
         finisher_(finish_options(samples), m0_, run.options.threads - 1, run.progress) {
     for (std::size_t k = 0; k < levels_.size(); ++k) levels_[k].asked = run.options.levels[k];
     m0_ = std::move(m0.mesh);
@@ -129,7 +130,7 @@ class Levels {
   }
 
   Result<void> simplify() {
-    const BuildLodsOptions build = simplification(run_.options);
+    const BuildLodsOptions build = simplification(run_.options, run_.progress);
     if (build.placement == Placement::subset) return simplify_at_once(build);
     return build_lods_one_by_one(m0_, build, run_.progress, [&](std::size_t k, LodLevel lod) {
       ReconstructedLevel& level = levels_[k];
@@ -171,7 +172,7 @@ class Levels {
     if (run_.progress.cancelled()) return kCancelled;
     std::vector<const IndexedMesh*> decoded;
     for (std::size_t k = 0; k < levels_.size(); ++k) decoded.push_back(&finisher_.decoded(k));
-    return comparison_.compare(levels_, decoded, finisher_.board(), run_.progress);
+    return comparison_.compare(levels_, decoded, finisher_.board());
   }
 
   const Run& run_;

@@ -105,13 +105,17 @@ class ClosedFans {
   std::vector<Next> next_;
 };
 
+/// Of a rim's planes against those of triangles of the same size. 16 brings rims as near as Garland-Heckbert's are;
+/// with 1 they lay up to twice as far off, for 1 % less error inside.
+inline constexpr float kRimWeight = 16;
+
 /// Adds the plane through the edge from the vertex at a right angle to its triangle, weighted by its squared length.
 inline void add_boundary_plane(Quadric& quadric, Vec3f edge, Vec3f side) {
   const float length2 = dot(edge, edge);
   if (length2 == 0) return;
   const Vec3f across = side - edge * (dot(side, edge) / length2);
   const float across2 = dot(across, across);
-  if (across2 > 0) add_plane(quadric, across, length2 / across2);
+  if (across2 > 0) add_plane(quadric, across, kRimWeight * length2 / across2);
 }
 
 /// Adds the planes of the triangles around v, weighted by their areas.

@@ -64,9 +64,9 @@ TEST(StartVertex, HasThePlanesOfItsTrianglesAndItsRim) {
   WorkingVertex vertex = make_vertex(positions[0], 5);
   ASSERT_TRUE(start_vertex(vertex, LocalVertex{0}, std::span<const RingTriangle>(ring), position));
   EXPECT_TRUE(vertex.on_boundary);
-  EXPECT_FLOAT_EQ(vertex.quadric().value({0, 0, 1}), 2);  // the triangle's area
-  EXPECT_FLOAT_EQ(vertex.quadric().value({0, 1, 0}), 4);  // the edge to (2, 0, 0), squared
-  EXPECT_FLOAT_EQ(vertex.quadric().value({1, 0, 0}), 4);
+  EXPECT_FLOAT_EQ(vertex.quadric().value({0, 0, 1}), 2);               // the triangle's area
+  EXPECT_FLOAT_EQ(vertex.quadric().value({0, 1, 0}), 4 * kRimWeight);  // the edge to (2, 0, 0), squared
+  EXPECT_FLOAT_EQ(vertex.quadric().value({1, 0, 0}), 4 * kRimWeight);
 }
 
 }  // namespace

@@ -35,7 +35,8 @@ void for_corners(Partition& partition, int threads, const Visit& visit) {
 
 }  // namespace
 
-LockedStars::LockedStars(const WorkingMesh& mesh, Partition& partition, int threads) : slot_(partition.locked.size()) {
+LockedStars::LockedStars(const WorkingMesh& mesh, Partition& partition, int threads, const Watch& watch)
+    : slot_(partition.locked.size()) {
   for (std::size_t place = 0; place < partition.locked.size(); ++place) {
     if (!partition.locked[place]) continue;
     slot_[place] = static_cast<std::int32_t>(places_.size());
@@ -43,8 +44,11 @@ LockedStars::LockedStars(const WorkingMesh& mesh, Partition& partition, int thre
   }
   vertices_ = Buffer<WorkingVertex>(places_.size());
   count(partition, threads);
+  if (watch.is_cancelled()) return;
   fill(partition, threads);
+  if (watch.is_cancelled()) return;
   start(mesh, partition, threads);
+  is_made_ = true;
 }
 
 void LockedStars::count(Partition& partition, int threads) {

@@ -5,6 +5,7 @@
 
 #include "engine/simplify/buffer.h"
 #include "engine/simplify/partition.h"
+#include "engine/simplify/watch.h"
 #include "engine/simplify/working_mesh.h"
 
 namespace geosis {
@@ -14,8 +15,10 @@ namespace geosis {
 class LockedStars {
  public:
   /// mesh   before its first pass.
-  LockedStars(const WorkingMesh& mesh, Partition& partition, int threads);
+  LockedStars(const WorkingMesh& mesh, Partition& partition, int threads, const Watch& watch);
 
+  /// False: it was cancelled, and there is nothing to be read.
+  bool is_made() const { return is_made_; }
   /// False if the triangles around one of them are not a fan.
   bool is_manifold() const { return is_manifold_; }
 
@@ -36,7 +39,7 @@ class LockedStars {
   std::vector<std::uint32_t> first_;  // (locked vertices + 1) into pairs_
   Buffer<Pair> pairs_;
   Buffer<WorkingVertex> vertices_;
-  bool is_manifold_ = true;
+  bool is_manifold_ = true, is_made_ = false;
 };
 
 }  // namespace geosis

@@ -75,7 +75,9 @@ class Pass {
 
   PassResult run() {
     if (partition_.windows == 0) return {};
-    if (mesh_.m0()) locked_.emplace(mesh_, partition_, options_.threads);
+    if (watch_.is_cancelled()) return {PassEnd::cancelled};
+    if (mesh_.m0()) locked_.emplace(mesh_, partition_, options_.threads, watch_);
+    if ((locked_ && !locked_->is_made()) || watch_.is_cancelled()) return {PassEnd::cancelled};
     if (locked_ && !locked_->is_manifold()) return {PassEnd::not_manifold};
     const auto share = share_out(partition_, static_cast<std::int64_t>(mesh_.triangles().size()), options_);
     const auto windows = static_cast<std::size_t>(partition_.windows);

@@ -14,6 +14,8 @@ class Watch {
   /// to_remove   triangles between M0 and the last level.
   Watch(Progress& progress, std::int64_t to_remove) : progress_(progress), to_remove_(to_remove) {}
 
+  bool is_cancelled() const { return progress_.cancelled(); }
+
   /// False once the work is cancelled.
   bool removed(std::int64_t triangles) {
     const std::int64_t all = removed_ += triangles;

@@ -112,7 +112,8 @@ TEST_F(DamageTest, IsNeverServedAndOftenMended) {
     }
   }
   EXPECT_GT(reports, 20);
-  for (const char* name : {"volume.json", "sidecar.json", "bricks", "request.json", "manifest.json", "2.0.drc"}) {
+  for (const char* name :
+       {"volume.json", "sidecar.json", "bricks", "request.json", "manifest.json", "2.0.drc", "2.ply"}) {
     EXPECT_TRUE(refused_files.contains(name)) << name;
   }
 }

@@ -127,13 +127,13 @@ class Collapser {
         neighbours_of(u, vertices_[u].on_boundary, w_.rings, [&](LocalVertex v) { return !vertices_[v].locked; });
     if (around.count == 0) return;
     float costs[(kMaxDegree + kLanes) / kLanes * kLanes];
+    float least = std::numeric_limits<float>::max();
     for (int first = 0; first < around.count; first += kLanes) {
       const WorkingVertex* v[kLanes];
       for (int k = 0; k < kLanes; ++k) v[k] = &vertices_[around.ids[std::min(first + k, around.count - 1)]];
       edge_costs(vertices_[u], v, costs + first, rules_.placement);
+      least = std::min(least, *std::min_element(costs + first, costs + first + kLanes));  // what is filled up repeats
     }
-    float least = costs[0];
-    for (int k = 1; k < around.count; ++k) least = costs[k] < least ? costs[k] : least;
     const Float8 limit = all8(queue_limit(least));
     for (int first = 0; first < around.count; first += kLanes) {
       Float8 group;

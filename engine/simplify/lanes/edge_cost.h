@@ -15,9 +15,8 @@ HWY_BEFORE_NAMESPACE();
 namespace geosis {
 namespace HWY_NAMESPACE {
 
-inline constexpr float kMidpointPull =
-    1e-3f;  // relative to the trace; 1e-2 costs 5 to 10 % of error, 1e-4 gains nothing
-inline constexpr float kLengthWeight = 1e-4f;
+inline constexpr float kMidpointPull = 1e-3f;  // relative to the trace; 1e-2 costs 5 to 10 % of error
+inline constexpr float kLengthWeight = 1e-5f;
 inline constexpr float kFarthest2 = 2.0f;  // squared distance from the midpoint, in squared edge lengths
 
 /// What is known at the edge's middle. The functions below are for one edge (float) and for eight (Float8) alike, with

@@ -22,27 +22,8 @@ inline Float4 load4(const void* from) {
   return result;
 }
 
-inline bool any(Mask4 mask) {
-  std::uint64_t halves[2];
-  std::memcpy(halves, &mask, sizeof(halves));
-  return (halves[0] | halves[1]) != 0;
-}
-
-inline Float4 select(Mask4 mask, Float4 yes, Float4 no) {
-  return mask ? yes : no;
-}
 inline float select(bool condition, float yes, float no) {
   return condition ? yes : no;
-}
-
-inline Float4 magnitude(Float4 x) {
-  return select(x < 0.0f, -x, x);
-}
-
-/// The lanes first ... first + 3 that are below end.
-inline Mask4 lanes_below(int first, int end) {
-  const Mask4 lane{first, first + 1, first + 2, first + 3};
-  return lane < end;
 }
 
 inline float sum(Float4 x) {

@@ -9,7 +9,7 @@
 
 namespace geosis {
 
-/// A vertex while levels are made: one cache line. Position and quadric (in the vertex's own frame) lie so that four
+/// A vertex while levels are made: one cache line. Position and quadric (in the vertex's own frame) lie so that
 /// vertices become lanes by transposing rows of four floats:
 ///
 ///   row 0   x   y   z   c
@@ -51,24 +51,8 @@ inline WorkingVertex make_vertex(Vec3f position, std::int32_t origin) {
   return vertex;
 }
 
-/// Positions of four vertices.
-inline Vec3<Float4> positions_of(const WorkingVertex& p, const WorkingVertex& q, const WorkingVertex& r,
-                                 const WorkingVertex& s) {
-  Float4 x = p.row(0), y = q.row(0), z = r.row(0), c = s.row(0);
-  transpose(x, y, z, c);
-  return {x, y, z};
-}
-
 inline Vec3<Float4> all4(Vec3f p) {
   return {all4(p.x), all4(p.y), all4(p.z)};
-}
-
-inline Vec3<Float4> select(Mask4 mask, Vec3<Float4> yes, Vec3<Float4> no) {
-  return {select(mask, yes.x, no.x), select(mask, yes.y, no.y), select(mask, yes.z, no.z)};
-}
-
-inline Vec3f sum(Vec3<Float4> v) {
-  return {sum(v.x), sum(v.y), sum(v.z)};
 }
 
 }  // namespace geosis

@@ -131,9 +131,6 @@ HWY_INLINE Float8 operator+(Float8 a, float b) {
 HWY_INLINE Mask8 operator<(Float8 a, Float8 b) {
   return {a.low < b.low, a.high < b.high};
 }
-HWY_INLINE Mask8 operator>(Float8 a, Float8 b) {
-  return b < a;
-}
 HWY_INLINE Mask8 operator<=(Float8 a, Float8 b) {
   return {a.low <= b.low, a.high <= b.high};
 }

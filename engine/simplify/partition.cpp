@@ -127,10 +127,10 @@ class TriangleSort {
   void run(int threads) {
     inside_.assign(kChunks * windows_, 0);
     crossing_.assign(kChunks * windows_, 0);
-    parallel_for(kChunks, threads, [&](std::size_t chunk) { count(chunk); });
+    for_chunks(triangles_.size(), threads, [&](auto... piece) { count(piece...); });
     partition_.triangles = Buffer<LocalTriangle>(sum_up(inside_, partition_.first_triangle) + 1);
     partition_.crossing = Buffer<Triangle>(sum_up(crossing_, partition_.first_crossing) + 1);
-    parallel_for(kChunks, threads, [&](std::size_t chunk) { place_triangles(chunk); });
+    for_chunks(triangles_.size(), threads, [&](auto... piece) { place_triangles(piece...); });
   }
 
  private:
@@ -148,8 +148,7 @@ class TriangleSort {
     return {triangle, triangle[0] >> shift_, inside};
   }
 
-  void count(std::size_t chunk) {
-    const auto [begin, end] = chunk_of(triangles_.size(), chunk);
+  void count(std::size_t chunk, std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const Placed p = placed(t);
       ++(p.inside ? inside_ : crossing_)[chunk * windows_ + static_cast<std::size_t>(p.window)];
@@ -169,8 +168,7 @@ class TriangleSort {
     return first[windows_] = sum;
   }
 
-  void place_triangles(std::size_t chunk) {
-    const auto [begin, end] = chunk_of(triangles_.size(), chunk);
+  void place_triangles(std::size_t chunk, std::size_t begin, std::size_t end) {
     const std::int32_t within = partition_.window_size - 1;
     for (std::size_t t = begin; t < end; ++t) {
       const auto [triangle, window, inside] = placed(t);

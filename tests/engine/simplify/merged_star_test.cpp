@@ -4,23 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/engine/simplify/patch.h"
+
 namespace geosis {
 namespace {
-
-struct Patch {
-  std::vector<WorkingVertex> vertices;
-  Rings rings;
-  VertexMarks marks;
-};
-
-/// Boundary vertices are those named; positions do not matter here.
-Patch patch(std::size_t vertices, std::vector<LocalTriangle> triangles, std::vector<LocalVertex> boundary) {
-  Patch p{std::vector<WorkingVertex>(vertices), {}, {}};
-  p.rings.build(vertices, triangles);
-  p.marks.reset(vertices);
-  for (const LocalVertex v : boundary) p.vertices[v].on_boundary = true;
-  return p;
-}
 
 bool may_merge(Patch p, LocalVertex u, LocalVertex v) {
   MergedStar star;
@@ -33,7 +20,7 @@ bool may_merge(Patch p, LocalVertex u, LocalVertex v) {
 //    . / . / . /
 //     1---9---8
 Patch two_inner_vertices() {
-  return patch(
+  return make_patch(
       10,
       {{0, 3, 2}, {0, 4, 3}, {0, 7, 4}, {0, 9, 7}, {0, 1, 9}, {0, 2, 1}, {7, 5, 4}, {7, 6, 5}, {7, 8, 6}, {7, 9, 8}},
       {1, 2, 3, 4, 5, 6, 8, 9});
@@ -56,33 +43,33 @@ TEST(MergedStar, InnerEdgeBetweenBoundaryVerticesMayNot) {
   //   3---2
   //   | / |
   //   0---1
-  EXPECT_FALSE(may_merge(patch(4, {{0, 1, 2}, {0, 2, 3}}, {0, 1, 2, 3}), 0, 2));
-  EXPECT_TRUE(may_merge(patch(4, {{0, 1, 2}, {0, 2, 3}}, {0, 1, 2, 3}), 0, 1));
+  EXPECT_FALSE(may_merge(make_patch(4, {{0, 1, 2}, {0, 2, 3}}, {0, 1, 2, 3}), 0, 2));
+  EXPECT_TRUE(may_merge(make_patch(4, {{0, 1, 2}, {0, 2, 3}}, {0, 1, 2, 3}), 0, 1));
 }
 
 TEST(MergedStar, SingleTriangleStays) {
-  EXPECT_FALSE(may_merge(patch(3, {{0, 1, 2}}, {0, 1, 2}), 0, 1));
+  EXPECT_FALSE(may_merge(make_patch(3, {{0, 1, 2}}, {0, 1, 2}), 0, 1));
 }
 
 TEST(MergedStar, TetrahedronStays) {
-  EXPECT_FALSE(may_merge(patch(4, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, {}), 0, 1));
+  EXPECT_FALSE(may_merge(make_patch(4, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, {}), 0, 1));
 }
 
 TEST(MergedStar, TwoTrianglesBackToBackStay) {
-  EXPECT_FALSE(may_merge(patch(3, {{0, 1, 2}, {0, 2, 1}}, {}), 0, 1));
+  EXPECT_FALSE(may_merge(make_patch(3, {{0, 1, 2}, {0, 2, 1}}, {}), 0, 1));
 }
 
 TEST(MergedStar, ThreeEdgeHoleStays) {
   // An annulus around the hole 0 1 2 with the outer ring 3 4 5.
   const std::vector<LocalTriangle> annulus = {{0, 3, 4}, {0, 4, 1}, {1, 4, 5}, {1, 5, 2}, {2, 5, 3}, {2, 3, 0}};
-  EXPECT_FALSE(may_merge(patch(6, annulus, {0, 1, 2, 3, 4, 5}), 0, 1));
+  EXPECT_FALSE(may_merge(make_patch(6, annulus, {0, 1, 2, 3, 4, 5}), 0, 1));
 }
 
 TEST(MergedStar, WaistOfThreeEdgesStays) {
   // Two tetrahedra-like caps (apexes 3 and 4) on the triangle 0 1 2: merging 0 and 1 would leave two triangles on 2.
   const std::vector<LocalTriangle> bipyramid = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 0, 4}, {2, 1, 4}, {0, 2, 4}};
-  EXPECT_FALSE(may_merge(patch(5, bipyramid, {}), 0, 1));
-  EXPECT_TRUE(may_merge(patch(5, bipyramid, {}), 0, 3));
+  EXPECT_FALSE(may_merge(make_patch(5, bipyramid, {}), 0, 1));
+  EXPECT_TRUE(may_merge(make_patch(5, bipyramid, {}), 0, 3));
 }
 
 TEST(MergedStar, VerticesOfOtherTrianglesOnlyDoNotMerge) {

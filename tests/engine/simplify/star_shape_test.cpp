@@ -4,24 +4,16 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/engine/simplify/patch.h"
+
 namespace geosis::HWY_NAMESPACE {
 namespace {
-
-struct Patch {
-  std::vector<WorkingVertex> vertices;
-  Rings rings;
-  VertexMarks marks;
-};
 
 //   3---2
 //   | / |    in the plane z = 0, around the centre 4
 //   0---1
 Patch pyramid_base() {
-  Patch p{std::vector<WorkingVertex>(5), {}, {}};
-  const LocalTriangle triangles[] = {{4, 0, 1}, {4, 1, 2}, {4, 2, 3}, {4, 3, 0}};
-  p.rings.build(5, triangles);
-  p.marks.reset(5);
-  for (int v = 0; v < 4; ++v) p.vertices[v].on_boundary = true;
+  Patch p = make_patch(5, {{4, 0, 1}, {4, 1, 2}, {4, 2, 3}, {4, 3, 0}}, {0, 1, 2, 3});
   const Vec3f places[] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {1, 1, 0}};
   for (int v = 0; v < 5; ++v) p.vertices[v].position = places[v];
   return p;

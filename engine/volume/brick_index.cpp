@@ -1,8 +1,10 @@
 #include "engine/volume/brick_index.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
+#include <new>
 
 #include <xxhash.h>
 
@@ -77,30 +79,47 @@ BlockSpan blocks_at(std::int32_t position, std::int32_t n) {
 
 }  // namespace
 
-StoredSummary index_brick(std::span<const float> samples, GridShape extent,
-                          std::span<ValueRange, kBlocksPerBrick> blocks) {
-  for (ValueRange& range : blocks) range = kEmpty;
-  const float* row = samples.data();
-  for (std::int32_t a = 0; a < extent.inlines; ++a) {
-    const BlockSpan along_i = blocks_at(a, extent.inlines);
-    for (std::int32_t b = 0; b < extent.crosslines; ++b, row += extent.samples) {
-      const BlockSpan along_j = blocks_at(b, extent.crosslines);
-      const BlockRow ranges = ranges_along(row, extent.samples);
-      for (std::int32_t p = along_i.first; p <= along_i.last; ++p)
-        for (std::int32_t q = along_j.first; q <= along_j.last; ++q)
-          for (std::int32_t c = 0; c < kBlocksPerAxis; ++c)
-            include(blocks[static_cast<std::size_t>((p * kBlocksPerAxis + q) * kBlocksPerAxis + c)],
-                    ranges[static_cast<std::size_t>(c)]);
-    }
-  }
+void BrickIndexer::FreeChecksum::operator()(XXH3_state_s* checksum) const {
+  XXH3_freeState(checksum);
+}
 
+BrickIndexer::BrickIndexer(GridShape extent, std::span<ValueRange, kBlocksPerBrick> blocks)
+    : extent_(extent), blocks_(blocks), checksum_(XXH3_createState()) {
+  if (!checksum_) throw std::bad_alloc();
+  XXH3_64bits_reset(checksum_.get());
+  std::fill(blocks.begin(), blocks.end(), kEmpty);
+}
+
+void BrickIndexer::add_rows(std::span<const float> samples) {
+  const auto length = static_cast<std::size_t>(extent_.samples);
+  for (std::size_t begin = 0; begin < samples.size(); begin += length, ++rows_) {
+    const BlockSpan along_i = blocks_at(static_cast<std::int32_t>(rows_ / extent_.crosslines), extent_.inlines);
+    const BlockSpan along_j = blocks_at(static_cast<std::int32_t>(rows_ % extent_.crosslines), extent_.crosslines);
+    const BlockRow ranges = ranges_along(samples.data() + begin, extent_.samples);
+    for (std::int32_t p = along_i.first; p <= along_i.last; ++p)
+      for (std::int32_t q = along_j.first; q <= along_j.last; ++q)
+        for (std::int32_t c = 0; c < kBlocksPerAxis; ++c)
+          include(blocks_[static_cast<std::size_t>((p * kBlocksPerAxis + q) * kBlocksPerAxis + c)],
+                  ranges[static_cast<std::size_t>(c)]);
+  }
+  missing_ += static_cast<std::int64_t>(count_missing(samples));
+  XXH3_64bits_update(checksum_.get(), samples.data(), samples.size_bytes());
+}
+
+StoredSummary BrickIndexer::summary() const {
   StoredSummary summary;
   summary.range = kEmpty;
-  for (const ValueRange& range : blocks) include(summary.range, range);
-  const std::size_t missing = count_missing(samples);
-  summary.flags = (missing > 0 ? kHasMissing : 0) | (missing == samples.size() ? kAllMissing : 0);
-  summary.checksum = XXH3_64bits(samples.data(), samples.size_bytes());
+  for (const ValueRange& range : blocks_) include(summary.range, range);
+  summary.flags = (missing_ > 0 ? kHasMissing : 0) | (missing_ == extent_.count() ? kAllMissing : 0);
+  summary.checksum = XXH3_64bits_digest(checksum_.get());
   return summary;
+}
+
+StoredSummary index_brick(std::span<const float> samples, GridShape extent,
+                          std::span<ValueRange, kBlocksPerBrick> blocks) {
+  BrickIndexer indexer(extent, blocks);
+  indexer.add_rows(samples);
+  return indexer.summary();
 }
 
 }  // namespace geosis

@@ -31,6 +31,12 @@ Result<void> check_axes(GridShape shape) {
   return {};
 }
 
+BrickSpan bricks_with(std::int32_t node, std::int32_t bricks) {
+  const std::int32_t upper = std::min(node / kBrickCells, bricks - 1);
+  const bool is_shared = node > 0 && node % kBrickCells == 0 && node / kBrickCells == upper;
+  return {is_shared ? upper - 1 : upper, upper};
+}
+
 BrickLayout::BrickLayout(GridShape shape)
     : shape_(shape), grid_{bricks_along(shape.inlines), bricks_along(shape.crosslines), bricks_along(shape.samples)} {}
 

@@ -15,6 +15,14 @@ inline constexpr std::int32_t kMaxAxisNodes = 131071;
 /// errors: invalid_argument (an axis without nodes), limit_exceeded (an axis longer than kMaxAxisNodes).
 Result<void> check_axes(GridShape shape);
 
+/// Bricks along one axis, first and last.
+struct BrickSpan {
+  std::int32_t first = 0, last = 0;
+};
+
+/// Those of an axis' `bricks` that hold the node: one, or two on a shared layer.
+BrickSpan bricks_with(std::int32_t node, std::int32_t bricks);
+
 /// Where the bricks of a volume lie: on the grid, and one after the other in storage. Pure arithmetic, O(1) each.
 ///
 /// An axis of n nodes has g = max(1, ceil((n - 1) / 63)) bricks, which store n + g - 1 layers (shared layers twice), so

@@ -14,16 +14,6 @@ float* samples_of(std::span<std::byte> file, const BrickFilePlan& plan, GridInde
   return reinterpret_cast<float*>(file.data() + plan.samples_at) + plan.layout.sample_offset(place);
 }
 
-// Bricks along one axis that hold the node: one, or two on a shared layer.
-struct BrickSpan {
-  std::int32_t first, last;
-};
-BrickSpan bricks_with(std::int32_t node, std::int32_t bricks) {
-  const std::int32_t upper = std::min(node / kBrickCells, bricks - 1);
-  const bool shared = node > 0 && node % kBrickCells == 0 && node / kBrickCells == upper;
-  return {shared ? upper - 1 : upper, upper};
-}
-
 // The part of the samples that one brick holds; nothing when it holds none.
 void store_in_brick(std::span<std::byte> file, const BrickFilePlan& plan, GridIndex place, GridIndex node,
                     std::span<const float> samples) {
@@ -57,15 +47,6 @@ void store_samples(std::span<std::byte> file, const BrickFilePlan& plan, std::in
   for (std::int32_t bi = along_i.first; bi <= along_i.last; ++bi)
     for (std::int32_t bj = along_j.first; bj <= along_j.last; ++bj)
       store_in_column(file, plan, {bi, bj, 0}, {i, j, k0}, samples);
-}
-
-void store_samples_in_layer(std::span<std::byte> file, const BrickFilePlan& plan, std::int32_t bk, std::int32_t i,
-                            std::int32_t j, std::int32_t k0, std::span<const float> samples) {
-  const BrickSpan along_i = bricks_with(i, plan.layout.grid().inlines);
-  const BrickSpan along_j = bricks_with(j, plan.layout.grid().crosslines);
-  for (std::int32_t bi = along_i.first; bi <= along_i.last; ++bi)
-    for (std::int32_t bj = along_j.first; bj <= along_j.last; ++bj)
-      store_in_brick(file, plan, {bi, bj, bk}, {i, j, k0}, samples);
 }
 
 void index_stored_brick(std::span<std::byte> file, const BrickFilePlan& plan, std::size_t brick) {

@@ -14,10 +14,6 @@ namespace geosis {
 void store_samples(std::span<std::byte> file, const BrickFilePlan& plan, std::int32_t i, std::int32_t j,
                    std::int32_t k0, std::span<const float> samples);
 
-/// The same into the bricks of one layer along the sample axis alone, number bk.
-void store_samples_in_layer(std::span<std::byte> file, const BrickFilePlan& plan, std::int32_t bk, std::int32_t i,
-                            std::int32_t j, std::int32_t k0, std::span<const float> samples);
-
 /// Computes summary and block ranges of one brick, whose samples are all there.
 void index_stored_brick(std::span<std::byte> file, const BrickFilePlan& plan, std::size_t brick);
 

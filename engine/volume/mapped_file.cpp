@@ -94,6 +94,17 @@ Result<void> MappedFile::map(std::uint64_t bytes, bool writable, const std::file
   return {};
 }
 
+Result<void> MappedFile::write_at(std::uint64_t offset, std::span<const std::byte> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return failed("cannot write", "a new file", errno);
+    offset += static_cast<std::uint64_t>(written);
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+  return {};
+}
+
 // Advice: where it fails or is not known, sync() has more to do.
 void MappedFile::start_writing(std::uint64_t offset, std::uint64_t bytes) const {
   ::sync_file_range(descriptor_, static_cast<off_t>(offset), static_cast<off_t>(bytes), SYNC_FILE_RANGE_WRITE);

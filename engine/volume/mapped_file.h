@@ -29,6 +29,9 @@ class MappedFile {
 
   std::span<const std::byte> bytes() const { return {data_, size_}; }
   std::span<std::byte> writable() { return {data_, size_}; }
+  /// Writes through the file instead of the mapping, which shows the same bytes: new pages are then neither zeroed nor
+  /// brought in one by one. errors: unavailable, no_space.
+  Result<void> write_at(std::uint64_t offset, std::span<const std::byte> bytes) const;
   /// Begins to write these bytes to the disk and does not wait for it; sync() tells whether that came to a good end.
   void start_writing(std::uint64_t offset, std::uint64_t bytes) const;
   /// Returns when all bytes are on the disk. errors: unavailable.

@@ -26,7 +26,10 @@ class NewFile {
 
   std::span<std::byte> writable() { return file_->writable(); }
   /// See MappedFile.
-  void start_writing(std::uint64_t offset, std::uint64_t bytes) const { file_->start_writing(offset, bytes); }
+  Result<void> write_at(std::uint64_t offset, std::span<const std::byte> bytes) const {
+    return file_->write_at(offset, bytes);
+  }
+  const MappedFile& file() const { return *file_; }
   /// Flushes the file, gives it its name and flushes the folder; nothing of this for an unnamed one.
   /// errors: unavailable.
   Result<std::unique_ptr<MappedFile>> publish() &&;

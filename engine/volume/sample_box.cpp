@@ -9,9 +9,6 @@ namespace geosis {
 namespace {
 
 /// Bricks along one axis that hold a node of [first, last].
-struct BrickSpan {
-  std::int32_t first, last;
-};
 BrickSpan bricks_over(std::int32_t first, std::int32_t last, std::int32_t bricks) {
   return {std::min(first / kBrickCells, bricks - 1), std::min(last / kBrickCells, bricks - 1)};
 }

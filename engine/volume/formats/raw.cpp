@@ -1,5 +1,6 @@
 #include "engine/volume/formats/raw.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "engine/volume/formats/record_stream.h"
 #include "engine/volume/formats/sample_codec.h"
 #include "engine/volume/formats/sample_tally.h"
+#include "engine/volume/trace_order_writer.h"
 
 namespace geosis {
 namespace {
@@ -71,57 +73,67 @@ Result<RawLayout> read_layout(const ByteSource& source, const ImportOptions& opt
   return layout;
 }
 
-void put_trace(const RawLayout& layout, std::int64_t trace, std::span<const std::byte> bytes, std::span<float> samples,
-               BrickWriter& writer, SampleTally& tally) {
-  decode_samples(layout.code, layout.big_endian, bytes, samples);
-  const SampleCounts counts = layout.null.clean(samples);
-  tally.add_infinite(counts.infinite);
-  tally.add_trace(layout.shape.samples, counts.missing);
-  writer.put(static_cast<std::int32_t>(trace / layout.shape.crosslines),
-             static_cast<std::int32_t>(trace % layout.shape.crosslines), 0, samples);
-}
-
-// Finishes the bricks of each layer of inlines as soon as its last inline is there.
-class LayerFinisher {
+// Sample fastest: the file is trace after trace. Each column of bricks takes its traces of a batch.
+class RawTraces {
  public:
-  explicit LayerFinisher(BrickWriter& writer) : writer_(writer) {}
+  RawTraces(const RawLayout& layout, BrickWriter& writer, SampleTally& tally)
+      : layout_(layout), writer_(writer), tally_(tally) {}
 
-  void after(std::int64_t inlines) {
-    const BrickLayout& layout = writer_.layout();
-    const GridShape grid = layout.grid();
-    while (next_ < grid.inlines &&
-           layout.first_node({next_, 0, 0}).i + layout.extent({next_, 0, 0}).inlines <= inlines) {
-      const std::size_t bricks = static_cast<std::size_t>(grid.crosslines) * static_cast<std::size_t>(grid.samples);
-      const std::size_t first = static_cast<std::size_t>(next_) * bricks;
-      parallel_for(bricks, default_threads(), [&](std::size_t brick) { writer_.complete(first + brick); });
-      writer_.start_writing(first, bricks);
-      ++next_;
+  std::size_t columns() const { return static_cast<std::size_t>(writer_.columns()); }
+
+  Result<void> move(const RecordBatch& batch, std::int32_t column) {
+    const std::int64_t crosslines = layout_.shape.crosslines;
+    const std::int32_t begin = writer_.first_crossline(column), end = begin + writer_.crosslines(column);
+    const auto first = static_cast<std::int64_t>(batch.first), last = first + static_cast<std::int64_t>(batch.count);
+    for (std::int64_t i = first / crosslines; i * crosslines < last; ++i) {
+      const std::int64_t from = std::max(first, i * crosslines + begin), to = std::min(last, i * crosslines + end);
+      if (from >= to) continue;
+      const std::vector<float> samples = decode(batch, column, from, to);
+      const auto inline_index = static_cast<std::int32_t>(i), crossline = static_cast<std::int32_t>(from % crosslines);
+      if (auto put = writer_.put(column, inline_index, crossline, samples); !put) return put;
     }
+    return {};
   }
 
  private:
-  BrickWriter& writer_;
-  std::int32_t next_ = 0;
+  /// The traces [from, to), which lie in the batch. The last crossline of a column counts for the next one.
+  std::vector<float> decode(const RecordBatch& batch, std::int32_t column, std::int64_t from, std::int64_t to) {
+    const auto trace_samples = static_cast<std::size_t>(layout_.shape.samples);
+    const std::uint64_t trace_bytes = layout_.bytes_of(layout_.shape.samples);
+    const std::int64_t own_end =
+        column + 1 < writer_.columns() ? writer_.first_crossline(column + 1) : layout_.shape.crosslines;
+    std::vector<float> samples(static_cast<std::size_t>(to - from) * trace_samples);
+    for (std::int64_t trace = from; trace < to; ++trace) {
+      const auto line =
+          std::span(samples).subspan(static_cast<std::size_t>(trace - from) * trace_samples, trace_samples);
+      const std::uint64_t offset = (static_cast<std::uint64_t>(trace) - batch.first) * trace_bytes;
+      decode_samples(layout_.code, layout_.big_endian, batch.bytes.subspan(offset, trace_bytes), line);
+      const SampleCounts counts = layout_.null.clean(line);
+      if (trace % layout_.shape.crosslines >= own_end) continue;
+      tally_.add_infinite(counts.infinite);
+      tally_.add_trace(layout_.shape.samples, counts.missing);
+    }
+    return samples;
+  }
+
+  const RawLayout& layout_;
+  TraceOrderWriter writer_;
+  SampleTally& tally_;
 };
 
-// Sample fastest: the file is trace after trace. Returns the digest.
+// Returns the digest.
 Result<std::string> move_traces(const ByteSource& source, const RawLayout& layout, BrickWriter& writer,
                                 SampleTally& tally, Progress& progress) {
-  const std::uint64_t trace_bytes = layout.bytes_of(layout.shape.samples);
-  const auto crosslines = static_cast<std::uint64_t>(layout.shape.crosslines);
-  LayerFinisher finisher(writer);
-  const RecordVisitor visitor{
-      .in_order = [](const RecordBatch&) {},
-      .at_once =
-          [&](const RecordBatch& batch) {
-            std::vector<float> samples(static_cast<std::size_t>(layout.shape.samples));
-            for (std::uint64_t t = 0; t < batch.count; ++t)
-              put_trace(layout, static_cast<std::int64_t>(batch.first + t),
-                        batch.bytes.subspan(t * trace_bytes, trace_bytes), samples, writer, tally);
-          },
-      .after = [&](std::uint64_t traces) { finisher.after(static_cast<std::int64_t>(traces / crosslines)); }};
-  const auto traces = static_cast<std::uint64_t>(layout.shape.inlines) * crosslines;
-  return stream_records(source, {0, trace_bytes, traces}, visitor, default_threads(), progress);
+  RawTraces traces(layout, writer, tally);
+  RecordVisitor visitor;
+  visitor.parts = traces.columns();
+  visitor.in_parts = [&](const RecordBatch& batch, std::size_t column) {
+    return traces.move(batch, static_cast<std::int32_t>(column));
+  };
+  const auto count =
+      static_cast<std::uint64_t>(layout.shape.inlines) * static_cast<std::uint64_t>(layout.shape.crosslines);
+  return stream_records(source, {0, layout.bytes_of(layout.shape.samples), count}, visitor, default_threads(),
+                        progress);
 }
 
 VolumeDescription describe_raw(const RawLayout& layout, const ImportOptions& options) {

@@ -17,14 +17,7 @@ namespace geosis {
 namespace {
 
 constexpr std::uint64_t kPieceBytes = 1 << 20;
-constexpr std::int64_t kTileSamples = 1 << 19;  // 2 MiB: stays in a processor's cache
-constexpr std::int32_t kLongestRow = 4096;
 constexpr std::int32_t kSlots = 2 * kBrickSamples;  // one layer of bricks is turned while the next arrives
-
-/// Some inlines of some crosslines, all slices of a layer of bricks.
-struct Tile {
-  std::int32_t i0 = 0, inlines = 0, j0 = 0, crosslines = 0;
-};
 
 /// The slices that arrived last, in a file without a name: slice k in slot k modulo the number of slots.
 class SliceRing {
@@ -60,11 +53,14 @@ class SliceMover {
       const std::int32_t begin = b == 0 ? 0 : kBrickCells * b + 1;
       const std::int32_t end = b == layers ? 0 : std::min(kBrickCells * (b + 1) + 1, shape.samples);
       std::jthread turning;
-      if (b > 0) turning = std::jthread([this, b] { turn_layer(b - 1); });
+      Result<void> turned;
+      if (b > 0) turning = std::jthread([this, b, &turned] { turned = turn_layer(b - 1); });
       for (std::int32_t k = begin; k < end && received; ++k) {
         received = progress.cancelled() ? Error{ErrorCode::cancelled, "cancelled"} : receive(k);
         progress.report("import", static_cast<double>(k) / static_cast<double>(shape.samples));
       }
+      if (turning.joinable()) turning.join();
+      if (!turned) return std::move(turned).error();
     }
     if (!received) return std::move(received).error();
     describe_missing();
@@ -82,71 +78,69 @@ class SliceMover {
     return {};
   }
 
-  /// All tiles of a layer of bricks, then their index.
-  void turn_layer(std::int32_t b) {
+  /// All bricks of a layer. One brick is read, turned, indexed and written while a processor's cache holds it.
+  Result<void> turn_layer(std::int32_t b) {
     const GridShape grid = writer_.layout().grid();
-    const std::vector<Tile> tiles = tiles_of_layer();
-    parallel_for(tiles.size(), default_threads(), [&](std::size_t t) { turn(b, tiles[t]); });
     const std::size_t columns = static_cast<std::size_t>(grid.inlines) * static_cast<std::size_t>(grid.crosslines);
-    const auto samples = static_cast<std::size_t>(grid.samples);
+    std::vector<Result<void>> written(columns);
     parallel_for(columns, default_threads(), [&](std::size_t column) {
-      const std::size_t brick = column * samples + static_cast<std::size_t>(b);
-      writer_.complete(brick);
+      const std::size_t brick = column * static_cast<std::size_t>(grid.samples) + static_cast<std::size_t>(b);
+      written[column] = writer_.write_brick(brick, turn(writer_.layout().place(brick)));
       writer_.start_writing(brick, 1);
     });
+    for (Result<void>& outcome : written)
+      if (!outcome) return std::move(outcome);
+    return {};
   }
 
-  std::vector<Tile> tiles_of_layer() const {
-    const GridShape shape = layout_.shape;
-    const std::int32_t inlines = std::min(shape.inlines, kLongestRow);
-    const auto crosslines = static_cast<std::int32_t>(
-        std::clamp<std::int64_t>(kTileSamples / (std::int64_t{kBrickSamples} * inlines), 1, shape.crosslines));
-    std::vector<Tile> tiles;
-    for (std::int32_t j = 0; j < shape.crosslines; j += crosslines)
-      for (std::int32_t i = 0; i < shape.inlines; i += inlines)
-        tiles.push_back({i, std::min(inlines, shape.inlines - i), j, std::min(crosslines, shape.crosslines - j)});
-    return tiles;
-  }
-
-  void turn(std::int32_t b, const Tile& tile) {
-    const GridShape shape = layout_.shape;
-    const std::int32_t k0 = kBrickCells * b, count = std::min(kBrickSamples, shape.samples - k0);
-    const bool is_last = k0 + count == shape.samples;
-    const std::int32_t own = is_last ? count : count - 1;  // the shared slice counts for the next layer
-    const std::size_t row = static_cast<std::size_t>(tile.inlines);
-    std::vector<float> samples(row * static_cast<std::size_t>(tile.crosslines) * static_cast<std::size_t>(count));
-    for (std::int32_t k = 0; k < count; ++k) {
-      for (std::int32_t j = 0; j < tile.crosslines; ++j) {
-        const std::int64_t first = std::int64_t{tile.j0 + j} * shape.inlines + tile.i0;
-        const auto bytes = ring_.slice(k0 + k).subspan(layout_.bytes_of(first), layout_.bytes_of(tile.inlines));
-        const auto line = std::span(samples).subspan(row * static_cast<std::size_t>(k * tile.crosslines + j), row);
-        decode_samples(layout_.code, layout_.big_endian, bytes, line);
-        const SampleCounts counts = layout_.null.clean(line);
-        if (k < own) tally_.add_infinite(counts.infinite);
+  std::vector<float> turn(GridIndex place) {
+    const GridIndex first = writer_.layout().first_node(place);
+    const GridShape extent = writer_.layout().extent(place), own = own_nodes(place);
+    const auto row = static_cast<std::size_t>(extent.inlines);
+    std::vector<float> brick(static_cast<std::size_t>(extent.count()));
+    std::vector<float> lines(row * static_cast<std::size_t>(extent.samples));  // of one crossline, 16 KiB
+    for (std::int32_t j = 0; j < extent.crosslines; ++j) {
+      for (std::int32_t k = 0; k < extent.samples; ++k) {
+        const auto line = std::span(lines).subspan(row * static_cast<std::size_t>(k), row);
+        const SampleCounts counts = read_line(first.i, first.j + j, first.k + k, line, own.inlines);
+        if (j < own.crosslines && k < own.samples) tally_.add_infinite(counts.infinite);
+      }
+      for (std::int32_t i = 0; i < extent.inlines; ++i) {
+        float* trace = brick.data() + (std::ptrdiff_t{i} * extent.crosslines + j) * extent.samples;
+        const float* from = lines.data() + i;
+        for (std::int32_t k = 0; k < extent.samples; ++k) trace[k] = from[std::ptrdiff_t{k} * extent.inlines];
+        if (i < own.inlines && j < own.crosslines)
+          count_missing(first.i + i, first.j + j, {trace, static_cast<std::size_t>(own.samples)});
       }
     }
-    for (std::int32_t j = 0; j < tile.crosslines; ++j) put_crossline(b, tile, j, samples, count, own);
+    return brick;
   }
 
-  /// Gathers the part of every trace of one crossline and writes it.
-  void put_crossline(std::int32_t b, const Tile& tile, std::int32_t j, std::span<const float> samples,
-                     std::int32_t count, std::int32_t own) {
-    const std::int64_t slab = std::int64_t{tile.inlines} * tile.crosslines;
+  /// Nodes of a brick without those that count for its next neighbours.
+  GridShape own_nodes(GridIndex place) const {
+    const GridShape grid = writer_.layout().grid();
+    GridShape own = writer_.layout().extent(place);
+    if (place.i + 1 < grid.inlines) own.inlines = kBrickCells;
+    if (place.j + 1 < grid.crosslines) own.crosslines = kBrickCells;
+    if (place.k + 1 < grid.samples) own.samples = kBrickCells;
+    return own;
+  }
+
+  /// Samples of slice k at crossline j, from inline i on. returns: the counts of the first `own` ones.
+  SampleCounts read_line(std::int32_t i, std::int32_t j, std::int32_t k, std::span<float> line, std::int32_t own) {
+    const std::int64_t first = std::int64_t{j} * layout_.shape.inlines + i;
+    const auto bytes =
+        ring_.slice(k).subspan(layout_.bytes_of(first), layout_.bytes_of(static_cast<std::int64_t>(line.size())));
+    decode_samples(layout_.code, layout_.big_endian, bytes, line);
+    layout_.null.clean(line.subspan(static_cast<std::size_t>(own)));
+    return layout_.null.clean(line.first(static_cast<std::size_t>(own)));
+  }
+
+  void count_missing(std::int32_t i, std::int32_t j, std::span<const float> samples) {
     std::int64_t missing = 0;
-    std::vector<float> part(static_cast<std::size_t>(count));
-    for (std::int32_t i = 0; i < tile.inlines; ++i) {
-      const float* from = samples.data() + std::int64_t{j} * tile.inlines + i;
-      std::int32_t missing_here = 0;
-      for (std::int32_t k = 0; k < count; ++k) {
-        const float value = from[k * slab];
-        part[static_cast<std::size_t>(k)] = value;
-        missing_here += k < own && value != value;
-      }
-      missing += missing_here;
-      if (missing_here < own) is_live_[trace_of(tile.i0 + i, tile.j0 + j)] = 1;
-      writer_.put_in_layer(b, tile.i0 + i, tile.j0 + j, kBrickCells * b, part);
-    }
-    missing_ += missing;
+    for (const float value : samples) missing += value != value;
+    if (missing < static_cast<std::int64_t>(samples.size())) is_live_[trace_of(i, j)] = 1;
+    if (missing > 0) missing_ += missing;
   }
 
   std::size_t trace_of(std::int32_t i, std::int32_t j) const {

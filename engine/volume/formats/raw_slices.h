@@ -18,7 +18,7 @@ namespace geosis {
 ///
 /// brick_file  a file of at most 128 slices, without a name, is made beside it.
 /// returns     SHA-256 of the file, hexadecimal.
-/// memory      two tiles of 8 MiB a thread, and a byte for each trace.
+/// memory      a brick of 1 MiB a thread, and a byte for each trace.
 /// errors      no_space, unavailable, cancelled, and those of reading.
 Result<std::string> move_slices(const ByteSource& source, const RawLayout& layout,
                                 const std::optional<std::filesystem::path>& brick_file, BrickWriter& writer,

@@ -12,7 +12,6 @@ namespace geosis {
 namespace {
 
 constexpr std::uint64_t kBatchBytes = 8 << 20;
-constexpr std::uint64_t kPieceBytes = 256 << 10;
 
 Error cancelled() {
   return {ErrorCode::cancelled, "cancelled"};
@@ -40,14 +39,16 @@ class RecordStream {
         visitor_(visitor),
         threads_(threads),
         per_batch_(std::max<std::uint64_t>(1, kBatchBytes / records.bytes)),
-        per_piece_(std::max<std::uint64_t>(1, kPieceBytes / records.bytes)) {}
+        outcomes_(visitor.parts) {}
 
   Result<void> run(Sha256& digest, Progress& progress) {
     auto batch = read(0, buffers_[0]);
     for (int turn = 1; batch && batch->count > 0; turn = 1 - turn) {
       if (progress.cancelled()) return cancelled();
-      visitor_.in_order(*batch);
+      if (visitor_.in_order) visitor_.in_order(*batch);
       batch = work_and_read_ahead(*batch, buffers_[turn], digest);
+      for (Result<void>& outcome : outcomes_)
+        if (!outcome) return std::move(outcome).error();
       if (batch) progress.report("import", static_cast<double>(batch->first) / static_cast<double>(records_.count));
     }
     if (!batch) return std::move(batch).error();
@@ -63,37 +64,37 @@ class RecordStream {
     return RecordBatch{first, count, buffer};
   }
 
-  RecordBatch piece_of(const RecordBatch& batch, std::uint64_t piece) const {
-    const std::uint64_t begin = piece * per_piece_, count = std::min(per_piece_, batch.count - begin);
-    return {batch.first + begin, count, batch.bytes.subspan(begin * records_.bytes, count * records_.bytes)};
-  }
-
   // Reading may wait for a network: no thread that computes does it.
   Result<RecordBatch> work_and_read_ahead(const RecordBatch& batch, std::vector<std::byte>& buffer, Sha256& digest) {
     const std::jthread worker([&] { work(batch, digest); });
     return read(batch.first + batch.count, buffer);
   }
 
-  void work(const RecordBatch& batch, Sha256& digest) const {
-    const std::uint64_t pieces = (batch.count + per_piece_ - 1) / per_piece_;
-    parallel_for(pieces + 1, threads_, [&](std::size_t task) {
+  void work(const RecordBatch& batch, Sha256& digest) {
+    parallel_for(visitor_.parts + 1, threads_, [&](std::size_t task) {
       if (task == 0)
         digest.update(batch.bytes);
       else
-        visitor_.at_once(piece_of(batch, task - 1));
+        outcomes_[task - 1] = visitor_.in_parts(batch, task - 1);
     });
-    if (visitor_.after) visitor_.after(batch.first + batch.count);
   }
 
   const ByteSource& source_;
   const Records records_;
   const RecordVisitor& visitor_;
   const int threads_;
-  const std::uint64_t per_batch_, per_piece_;
+  const std::uint64_t per_batch_;
+  std::vector<Result<void>> outcomes_;  ///< of the parts of one batch
   std::vector<std::byte> buffers_[2];
 };
 
 }  // namespace
+
+RecordBatch share_of(const RecordBatch& batch, std::size_t part, std::size_t parts) {
+  const std::uint64_t begin = batch.count * part / parts, end = batch.count * (part + 1) / parts;
+  const std::uint64_t bytes = batch.count == 0 ? 0 : batch.bytes.size() / batch.count;
+  return {batch.first + begin, end - begin, batch.bytes.subspan(begin * bytes, (end - begin) * bytes)};
+}
 
 Result<std::string> stream_records(const ByteSource& source, const Records& records, const RecordVisitor& visitor,
                                    int threads, Progress& progress) {

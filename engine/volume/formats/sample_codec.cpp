@@ -132,14 +132,17 @@ NullValue::NullValue(std::optional<double> value, SampleCode code) {
   if (code == SampleCode::ibm32) tolerance_ = std::fabs(value_) * 0x1p-20f;
 }
 
-// Most samples are finite and none stands for "missing": that is found without a branch in the loop.
+// Most samples are finite and none stands for "missing": that is found without a branch in the loop. As integers the
+// magnitudes of floats are ordered, and what is not finite lies beyond the largest float.
 static bool are_plain(std::span<const float> samples) {
-  bool is_finite = true, is_nonzero = false;
+  constexpr auto largest = std::bit_cast<std::int32_t>(std::numeric_limits<float>::max());
+  std::int32_t any = 0, room = 0;
   for (const float value : samples) {
-    is_finite &= std::fabs(value) <= std::numeric_limits<float>::max();
-    is_nonzero |= value != 0;
+    const std::int32_t magnitude = std::bit_cast<std::int32_t>(value) & 0x7fffffff;
+    any |= magnitude;
+    room |= largest - magnitude;
   }
-  return is_finite && is_nonzero;
+  return any != 0 && room >= 0;
 }
 
 SampleCounts NullValue::clean(std::span<float> samples) const {

@@ -48,8 +48,12 @@ TraceMover::TraceMover(const ByteSource& source, const SegyLayout& layout, const
 
 Result<std::string> TraceMover::move_all(int threads, Progress& progress) {
   const Records records{layout_.first_trace, layout_.trace_bytes(), layout_.traces};
-  const RecordVisitor visitor{[this](const RecordBatch& batch) { read_headers(batch); },
-                              [this](const RecordBatch& batch) { move_batch(batch); }};
+  RecordVisitor visitor;
+  visitor.in_order = [this](const RecordBatch& batch) { read_headers(batch); };
+  visitor.in_parts = [&](const RecordBatch& batch, std::size_t part) {
+    move_batch(share_of(batch, part, visitor.parts));
+    return Result<void>();
+  };
   auto digest = stream_records(source_, records, visitor, threads, progress);
   if (!digest) return digest;
   if (changed_) return Error{ErrorCode::unavailable, "SEG-Y: the file changed while it was read"};

@@ -12,6 +12,7 @@
 
 #include "engine/volume/brick_file.h"
 #include "engine/volume/brick_writer.h"
+#include "engine/volume/trace_order_writer.h"
 
 namespace geosis {
 namespace {
@@ -93,6 +94,47 @@ TEST(Bricks, HoldPartsOfTracesWrittenInAnyOrder) {
     const auto bricks = std::move(*writer).finish(2, unwatched);
     ASSERT_TRUE(bricks) << bricks.error().message;
     expect_holds(**bricks, volume);
+  }
+}
+
+void expect_same_index(const BrickedVolume& bricks, const BrickedVolume& expected) {
+  for (std::size_t brick = 0; brick < bricks.brick_count(); ++brick) {
+    const BrickSummary a = bricks.summary(brick), b = expected.summary(brick);
+    EXPECT_TRUE(same_bits(a.range.min, b.range.min) && same_bits(a.range.max, b.range.max)) << "brick " << brick;
+    EXPECT_EQ(a.has_missing, b.has_missing) << "brick " << brick;
+    EXPECT_EQ(a.all_missing, b.all_missing) << "brick " << brick;
+    EXPECT_EQ(std::memcmp(bricks.block_ranges(brick).data(), expected.block_ranges(brick).data(), kBlockRangeBytes), 0)
+        << "brick " << brick;
+  }
+}
+
+TEST(Bricks, HoldTracesWrittenInOrderInPiecesOfAnyLength) {
+  for (unsigned seed = 201; seed <= 220; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    std::mt19937 random(seed);
+    const RandomVolume volume = random_volume(random);
+    const GridShape& shape = volume.shape;
+    auto writer = BrickWriter::create(shape, std::nullopt);
+    ASSERT_TRUE(writer) << writer.error().message;
+    TraceOrderWriter traces(*writer);
+    for (std::int32_t column = 0; column < traces.columns(); ++column) {
+      const std::int32_t begin = traces.first_crossline(column), end = begin + traces.crosslines(column);
+      for (std::int32_t i = 0; i < shape.inlines; ++i)
+        for (std::int32_t j = begin, count = 0; j < end; j += count) {
+          count = std::min<std::int32_t>(1 + static_cast<std::int32_t>(random() % 40), end - j);
+          const auto trace = std::size_t{static_cast<std::uint32_t>(i)} * static_cast<std::size_t>(shape.crosslines) +
+                             static_cast<std::size_t>(j);
+          const auto samples = static_cast<std::size_t>(shape.samples);
+          ASSERT_TRUE(traces.put(
+              column, i, j,
+              std::span(volume.samples).subspan(trace * samples, static_cast<std::size_t>(count) * samples)));
+        }
+    }
+    NoProgress unwatched;
+    const auto bricks = std::move(*writer).finish(2, unwatched);
+    ASSERT_TRUE(bricks) << bricks.error().message;
+    expect_holds(**bricks, volume);
+    expect_same_index(**bricks, *make_bricked_volume(shape, volume.samples));
   }
 }
 

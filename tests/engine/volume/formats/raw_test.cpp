@@ -85,6 +85,33 @@ TEST(ReadRaw, CountsNullsAndWholeMissingTraces) {
   }
 }
 
+// Bricks share layers of samples: what lies on one is counted once.
+TEST(ReadRaw, CountsMissingSamplesOfSharedLayersOnce) {
+  constexpr GridShape shape{66, 130, 70};
+  const auto bad = [](int i, int j, int k) { return i == 63 || j == 63 || j == 126 || k == 63 || (i == 5 && j == 7); };
+  const auto stored_in = [&](RawOrder order) {
+    std::vector<float> values(static_cast<std::size_t>(shape.count()), 1);
+    for (int i = 0; i < shape.inlines; ++i)
+      for (int j = 0; j < shape.crosslines; ++j)
+        for (int k = 0; k < shape.samples; ++k) {
+          const bool by_sample = order == RawOrder::sample_fastest;
+          const int at = by_sample ? (i * shape.crosslines + j) * shape.samples + k
+                                   : (k * shape.crosslines + j) * shape.inlines + i;
+          if (bad(i, j, k)) values[static_cast<std::size_t>(at)] = k == 63 ? INFINITY : NAN;
+        }
+    return stored(values, false);
+  };
+  constexpr std::int64_t kBadTraces = 130 + 65 * 2 + 1, kInfinite = 66 * 130;
+  for (const RawOrder order : {RawOrder::sample_fastest, RawOrder::inline_fastest}) {
+    const auto volume = import_bytes(stored_in(order), {.dims = shape, .order = order});
+    ASSERT_TRUE(volume) << volume.error().message;
+    EXPECT_EQ(volume->description.missing_traces, kBadTraces);
+    EXPECT_EQ(volume->description.missing_samples, kBadTraces * 70 + (66 * 130 - kBadTraces));
+    ASSERT_EQ(volume->description.warnings.size(), 1u);
+    EXPECT_NE(volume->description.warnings[0].detail.find(std::to_string(kInfinite)), std::string::npos);
+  }
+}
+
 TEST(ReadRaw, PlacesTheVolumeInTheWorld) {
   const auto volume = import_bytes(stored(std::vector<float>(8), false),
                                    {.dims = GridShape{2, 2, 2}, .origin = {10, 20, 30}, .spacing = {3.2, -3.2, 1.5}});

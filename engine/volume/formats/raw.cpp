@@ -86,16 +86,20 @@ class RawTraces {
     const std::int32_t begin = writer_.first_crossline(column), end = begin + writer_.crosslines(column);
     const auto first = static_cast<std::int64_t>(batch.first), last = first + static_cast<std::int64_t>(batch.count);
     for (std::int64_t i = first / crosslines; i * crosslines < last; ++i) {
-      const std::int64_t from = std::max(first, i * crosslines + begin), to = std::min(last, i * crosslines + end);
-      if (from >= to) continue;
-      const std::vector<float> samples = decode(batch, column, from, to);
-      const auto inline_index = static_cast<std::int32_t>(i), crossline = static_cast<std::int32_t>(from % crosslines);
-      if (auto put = writer_.put(column, inline_index, crossline, samples); !put) return put;
+      const std::int64_t stop = std::min(last, i * crosslines + end);
+      for (std::int64_t from = std::max(first, i * crosslines + begin), to = from; from < stop; from = to) {
+        to = std::min(stop, from + std::max<std::int64_t>(1, kSamplesAtOnce / layout_.shape.samples));
+        const std::vector<float> samples = decode(batch, column, from, to);
+        const auto crossline = static_cast<std::int32_t>(from - i * crosslines);
+        if (auto put = writer_.put(column, static_cast<std::int32_t>(i), crossline, samples); !put) return put;
+      }
     }
     return {};
   }
 
  private:
+  static constexpr std::int64_t kSamplesAtOnce = 1 << 20;  // 4 MiB
+
   /// The traces [from, to), which lie in the batch. The last crossline of a column counts for the next one.
   std::vector<float> decode(const RecordBatch& batch, std::int32_t column, std::int64_t from, std::int64_t to) {
     const auto trace_samples = static_cast<std::size_t>(layout_.shape.samples);

@@ -41,35 +41,6 @@ void add_one(float* out, const float* a, float weight, std::size_t count) {
   for (std::size_t k = 0; k < count; ++k) out[k] += weight * a[k];
 }
 
-/// `rows` rows of `count` numbers, `stride` apart: each becomes the kernel's mean of its neighbours. `copy` is scratch.
-void smooth_across_rows(float* field, std::size_t rows, std::size_t stride, std::size_t count,
-                        const std::vector<float>& kernel, std::vector<float>& copy) {
-  copy.resize(rows * count);
-  for (std::size_t r = 0; r < rows; ++r) std::copy_n(field + r * stride, count, &copy[r * count]);
-  for (std::size_t r = 0; r < rows; ++r) {
-    float* out = field + r * stride;
-    for (std::size_t k = 0; k < count; ++k) out[k] = kernel[0] * copy[r * count + k];
-    for (std::size_t t = 1; t < kernel.size(); ++t) {
-      const bool below = r >= t, above = r + t < rows;
-      if (below && above) {
-        add_pair(out, &copy[(r - t) * count], &copy[(r + t) * count], kernel[t], count);
-      } else if (below || above) {
-        add_one(out, &copy[(below ? r - t : r + t) * count], kernel[t], count);
-      }
-    }
-  }
-}
-
-/// The samples of each trace among themselves. `padded` is scratch.
-void smooth_along_row(float* row, std::size_t count, const std::vector<float>& kernel, std::vector<float>& padded) {
-  const std::size_t reach = kernel.size() - 1;
-  padded.assign(count + 2 * reach, 0.0f);
-  float* middle = padded.data() + reach;
-  std::copy_n(row, count, middle);
-  for (std::size_t k = 0; k < count; ++k) row[k] = kernel[0] * middle[k];
-  for (std::size_t t = 1; t < kernel.size(); ++t) add_pair(row, middle - t, middle + t, kernel[t], count);
-}
-
 }  // namespace
 
 std::vector<float> smoothing_kernel(double sigma) {
@@ -82,6 +53,33 @@ std::vector<float> smoothing_kernel(double sigma) {
     half.push_back(static_cast<float>(whole[n]));
   }
   return half;
+}
+
+void smooth_across_rows(float* field, std::size_t rows, std::size_t stride, std::size_t count,
+                        const std::vector<float>& kernel, std::vector<float>& scratch) {
+  scratch.resize(rows * count);
+  for (std::size_t r = 0; r < rows; ++r) std::copy_n(field + r * stride, count, &scratch[r * count]);
+  for (std::size_t r = 0; r < rows; ++r) {
+    float* out = field + r * stride;
+    for (std::size_t k = 0; k < count; ++k) out[k] = kernel[0] * scratch[r * count + k];
+    for (std::size_t t = 1; t < kernel.size(); ++t) {
+      const bool below = r >= t, above = r + t < rows;
+      if (below && above) {
+        add_pair(out, &scratch[(r - t) * count], &scratch[(r + t) * count], kernel[t], count);
+      } else if (below || above) {
+        add_one(out, &scratch[(below ? r - t : r + t) * count], kernel[t], count);
+      }
+    }
+  }
+}
+
+void smooth_along_row(float* row, std::size_t count, const std::vector<float>& kernel, std::vector<float>& scratch) {
+  const std::size_t reach = kernel.size() - 1;
+  scratch.assign(count + 2 * reach, 0.0f);
+  float* middle = scratch.data() + reach;
+  std::copy_n(row, count, middle);
+  for (std::size_t k = 0; k < count; ++k) row[k] = kernel[0] * middle[k];
+  for (std::size_t t = 1; t < kernel.size(); ++t) add_pair(row, middle - t, middle + t, kernel[t], count);
 }
 
 void smooth(std::span<float> field, GridShape shape, Vec3d sigma, int threads) {

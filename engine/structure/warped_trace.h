@@ -1,0 +1,43 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace geosis {
+
+/// A trace with its ends repeated, to be read between and a little beyond its samples. NaN spreads over the four
+/// samples around it.
+class WarpedTrace {
+ public:
+  static constexpr std::size_t kPad = 16;  ///< samples beyond the ends that may be asked for, less two
+
+  void load(const float* samples, std::size_t count) {
+    padded_.resize(count + 2 * kPad);
+    std::copy_n(samples, count, padded_.begin() + kPad);
+    std::fill_n(padded_.begin(), kPad, samples[0]);
+    std::fill_n(padded_.end() - kPad, kPad, samples[count - 1]);
+  }
+
+  /// Catmull-Rom's cubic at k + shift.
+  float at(std::size_t k, float shift) const { return point(k, shift).value; }
+
+  struct Point {
+    float value, slope;
+  };
+  Point point(std::size_t k, float shift) const {
+    const float position = static_cast<float>(k + kPad) + shift;
+    const auto below = static_cast<std::ptrdiff_t>(position);
+    const float t = position - static_cast<float>(below);
+    const float* x = padded_.data() + (below - 1);
+    const float a = x[2] - x[0];
+    const float b = 2 * x[0] - 5 * x[1] + 4 * x[2] - x[3];
+    const float c = 3 * (x[1] - x[2]) + x[3] - x[0];
+    return {x[1] + 0.5f * t * (a + t * (b + t * c)), 0.5f * (a + t * (2 * b + 3 * t * c))};
+  }
+
+ private:
+  std::vector<float> padded_;
+};
+
+}  // namespace geosis

@@ -62,8 +62,13 @@ void SampleTally::add(const SampleTally& other) {
   max = std::max(max, other.max);
 }
 
-BrickLabeller::BrickLabeller(const BrickField& field, const ExtractOptions& options, bool amplitudes)
-    : field_(field), capped_(options.cap), mirrored_(options.mirrored), amplitudes_(amplitudes), runs_(field) {}
+BrickLabeller::BrickLabeller(const BrickField& field, const ExtractOptions& options, const LabelOptions& labels)
+    : field_(field),
+      capped_(options.cap),
+      mirrored_(options.mirrored),
+      amplitudes_(labels.amplitudes),
+      labels_(labels),
+      runs_(field) {}
 
 BrickBodies BrickLabeller::label(const BrickMesh& mesh) {
   const auto vertices = static_cast<std::int32_t>(mesh.positions.size());
@@ -148,10 +153,17 @@ void BrickLabeller::tally_row(int a, int b, std::vector<SampleTally>& samples) c
   const std::uint64_t in_row = bits_up_to(own.last[2]), nodes = runs_.nodes(a, b) & in_row;
   if (nodes == 0) return;
   const std::uint64_t contacts = runs_.contacts(a, b), starts = runs_.starts(a, b), plain = nodes & ~contacts;
+  const GridIndex origin = field_.origin();
+  const std::uint64_t counts = counted({origin.i + a, origin.j + b, origin.k}, own.last[2] + 1);
   const auto tally = [&](int c, int count) {
     SampleTally& piece = samples[piece_[runs_.element(a, b, c)]];
-    piece.voxels += count;
-    if (amplitudes_) add_samples(field_.samples_from(a, b, c), count, piece);
+    const auto add = [&](int first, int number) {
+      piece.voxels += number;
+      if (amplitudes_) add_samples(field_.samples_from(a, b, first), number, piece);
+    };
+    const std::uint64_t run = (~std::uint64_t{0} >> (64 - count)) << c;
+    if ((run & ~counts) == 0) return add(c, count);
+    each_bit(run & counts, [&](int n) { add(n, 1); });
   };
   each_bit(plain & starts, [&](int c) {
     const std::uint64_t past = (~plain | (starts & ~(std::uint64_t{1} << c))) >> c;
@@ -213,6 +225,11 @@ std::int32_t BrickLabeller::piece_of(GridIndex node) const {
   return (runs_.nodes(a, b) >> c) & 1 ? piece_[runs_.element(a, b, c)] : kNone;
 }
 
+/// As LabelOptions::counted, of the nodes from that one on.
+std::uint64_t BrickLabeller::counted(GridIndex node, int count) const {
+  return labels_.counted ? labels_.counted(node.i, node.j, node.k, count) : ~std::uint64_t{0};
+}
+
 Result<BrickBodies> BrickLabeller::label_whole(const BrickedVolume& volume, std::size_t brick,
                                                const GridBox& region) const {
   const BrickLayout layout(volume.shape());
@@ -222,15 +239,26 @@ Result<BrickBodies> BrickLabeller::label_whole(const BrickedVolume& volume, std:
   bodies.pieces = 1;
   bodies.is_whole = true;
   SampleTally tally;
-  tally.voxels = 1;
-  for (int axis = 0; axis < 3; ++axis) tally.voxels *= own.last[axis] - own.first[axis] + 1;
+  BrickView view;
   if (amplitudes_) {
-    const auto view = volume.brick(brick);
-    if (!view) return view.error();
-    for (int a = own.first[0]; a <= own.last[0]; ++a) {
-      for (int b = own.first[1]; b <= own.last[1]; ++b) {
-        const std::size_t row = static_cast<std::size_t>(a) * view->extent.crosslines + b;
-        add_samples(view->samples + row * view->extent.samples + own.first[2], own.last[2] - own.first[2] + 1, tally);
+    auto read = volume.brick(brick);
+    if (!read) return std::move(read).error();
+    view = *std::move(read);
+  }
+  const int count = own.last[2] - own.first[2] + 1;
+  const std::uint64_t all = ~std::uint64_t{0} >> (64 - count);
+  const GridIndex origin = layout.first_node(place);
+  for (int a = own.first[0]; a <= own.last[0]; ++a) {
+    for (int b = own.first[1]; b <= own.last[1]; ++b) {
+      const std::uint64_t counts = counted({origin.i + a, origin.j + b, origin.k + own.first[2]}, count) & all;
+      tally.voxels += std::popcount(counts);
+      if (!amplitudes_) continue;
+      const std::size_t row = static_cast<std::size_t>(a) * view.extent.crosslines + b;
+      const float* samples = view.samples + row * view.extent.samples + own.first[2];
+      if (counts == all) {
+        add_samples(samples, count, tally);
+      } else {
+        each_bit(counts, [&](int n) { add_samples(samples + n, 1, tally); });
       }
     }
   }

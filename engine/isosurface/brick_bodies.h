@@ -10,6 +10,7 @@
 #include "engine/base/disjoint_sets.h"
 #include "engine/isosurface/brick_field.h"
 #include "engine/isosurface/brick_mesh.h"
+#include "engine/isosurface/labelled_surface.h"
 #include "engine/isosurface/node_runs.h"
 
 namespace geosis {
@@ -60,7 +61,8 @@ struct BrickBodies {
 class BrickLabeller {
  public:
   /// field   of the mesher that made the meshes.
-  BrickLabeller(const BrickField& field, const ExtractOptions& options, bool amplitudes);
+  /// labels  kept by reference; its seeds are not looked at.
+  BrickLabeller(const BrickField& field, const ExtractOptions& options, const LabelOptions& labels);
 
   /// mesh    of the brick that the field holds.
   /// cost    near enough O(vertices + triangles + runs of nodes in range).
@@ -80,9 +82,11 @@ class BrickLabeller {
   SharedLayer layer_of(const BrickMesh& mesh, int axis, bool upper) const;
   void add_layer_node(SharedLayer& layer, SharedLayer::Row& row, GridIndex node, int n, bool may_start) const;
   void tally_row(int a, int b, std::vector<SampleTally>& samples) const;
+  std::uint64_t counted(GridIndex node, int count) const;
 
   const BrickField& field_;
   const bool capped_, mirrored_, amplitudes_;
+  const LabelOptions& labels_;
   NodeRuns runs_;
   DisjointSets sets_;                ///< vertices, then runs
   std::vector<std::int32_t> piece_;  ///< element -> piece

@@ -65,12 +65,13 @@ void place_seeds(const std::vector<GridIndex>& nodes, const BrickLayout& layout,
 /// Meshes and labels brick after brick of a sweep.
 class LabelWorker {
  public:
-  LabelWorker(const BrickedVolume& volume, IsoRange range, const ExtractOptions& options, bool amplitudes, Sweep& sweep)
+  LabelWorker(const BrickedVolume& volume, IsoRange range, const ExtractOptions& options, const LabelOptions& labels,
+              Sweep& sweep)
       : volume_(volume),
         options_(options),
         sweep_(sweep),
         mesher_(volume, range, options),
-        labeller_(mesher_.field(), options, amplitudes) {}
+        labeller_(mesher_.field(), options, labels) {}
   LabelWorker(const LabelWorker&) = delete;
   LabelWorker& operator=(const LabelWorker&) = delete;
 
@@ -119,7 +120,7 @@ Result<Sweep> sweep_solid(const BrickedVolume& volume, IsoRange range, const Ext
   sweep.parts.resize(sweep.bricks.size());
   place_seeds(labels.seeds, BrickLayout(volume.shape()), options.region, sweep);
   auto swept = sweep_bricks(sweep.bricks.size(), options.threads, progress,
-                            [&] { return LabelWorker(volume, range, options, labels.amplitudes, sweep); });
+                            [&] { return LabelWorker(volume, range, options, labels, sweep); });
   if (!swept) return std::move(swept).error();
   return sweep;
 }

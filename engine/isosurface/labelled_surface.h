@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -39,6 +40,9 @@ struct LabelledSurface {
 struct LabelOptions {
   bool amplitudes = false;         ///< read every sample in range, also in bricks that hold no surface
   std::vector<GridIndex> seeds{};  ///< nodes whose bodies are wanted
+  /// Which of `count` nodes (at most 64) of a row, from k on, are samples to be counted, as bits: where several nodes
+  /// are the same sample, one of them. Empty: all. Called from several threads at once.
+  std::function<std::uint64_t(std::int32_t i, std::int32_t j, std::int32_t k, int count)> counted{};
 };
 
 /// extract_body, with labels.

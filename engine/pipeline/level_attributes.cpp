@@ -25,18 +25,22 @@ Result<VertexAttributes> attributes_of(const IndexedMesh& mesh, std::span<const 
                                        const AttributeSources& sources, const Progress& progress) {
   VertexAttributes attributes;
   attributes.body = bodies_of(origin, sources.body);
+  std::vector<Vec3f> at_samples;
+  if (sources.rectified != nullptr) at_samples = to_samples(*sources.rectified, mesh.positions, sources.threads);
+  const std::vector<Vec3f>& positions = sources.rectified != nullptr ? at_samples : mesh.positions;
   if (sources.filled != nullptr) {
-    auto reliability = reliability_at(*sources.filled, mesh.positions, sources.threads, progress);
+    auto reliability = reliability_at(*sources.filled, positions, sources.threads, progress);
     if (!reliability) return std::move(reliability).error();
     attributes.reliability = *std::move(reliability);
   }
   if (sources.normals != nullptr) {
-    auto normals = normals_of(mesh, *sources.normals, sources.mirrored, sources.threads, progress);
+    auto normals =
+        normals_of(mesh, *sources.normals, sources.normals_first, sources.mirrored, sources.threads, progress);
     if (!normals) return std::move(normals).error();
     attributes.normal = *std::move(normals);
   }
   if (sources.value != nullptr) {
-    auto values = sample_at(*sources.value, mesh.positions, sources.threads, progress);
+    auto values = sample_at(*sources.value, positions, sources.threads, progress);
     if (!values) return std::move(values).error();
     attributes.value = *std::move(values);
   }

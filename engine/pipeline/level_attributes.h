@@ -8,6 +8,7 @@
 #include "engine/mesh/indexed_mesh.h"
 #include "engine/mesh/vertex_attributes.h"
 #include "engine/missing/filled_volume.h"
+#include "engine/structure/layer_map.h"
 #include "engine/volume/bricks.h"
 
 namespace geosis {
@@ -17,8 +18,11 @@ struct AttributeSources {
   const FilledVolume* filled = nullptr;    ///< reliability
   std::span<const std::uint32_t> body;     ///< of each vertex of M0
   const BrickedVolume* normals = nullptr;  ///< normals: the samples that M0 was extracted from
+  GridIndex normals_first = {};            ///< the place of their node (0, 0, 0) in the mesh's coordinates
   bool mirrored = false;                   ///< as the triangles are ordered
   const BrickedVolume* value = nullptr;    ///< any volume of the shape of the one that M0 was extracted from
+  const LayerMap* rectified =
+      nullptr;  ///< set when the meshes are on the rectified grid, and not where the samples are
   int threads = 1;
 };
 

@@ -23,17 +23,22 @@ std::vector<Vec3d> normals_of_triangles(const IndexedMesh& mesh) {
 }
 
 /// The positions moved along the axis, as far as the volume goes.
-std::vector<Vec3f> moved(const std::vector<Vec3f>& positions, int axis, float step, float last) {
+std::vector<Vec3f> moved(const std::vector<Vec3f>& positions, GridIndex first, int axis, float step, float last) {
+  const Vec3f back = {static_cast<float>(first.i), static_cast<float>(first.j), static_cast<float>(first.k)};
   std::vector<Vec3f> result = positions;
-  for (Vec3f& p : result) p[axis] = std::clamp(p[axis] + step, 0.0f, last);
+  for (Vec3f& p : result) {
+    p = p - back;
+    p[axis] = std::clamp(p[axis] + step, 0.0f, last);
+  }
   return result;
 }
 
 /// One component of the gradient at each position; NaN where a sample that counts is missing.
-Result<std::vector<double>> slopes(const IndexedMesh& mesh, const BrickedVolume& samples, int axis, int threads,
-                                   const Progress& progress) {
+Result<std::vector<double>> slopes(const IndexedMesh& mesh, const BrickedVolume& samples, GridIndex first, int axis,
+                                   int threads, const Progress& progress) {
   const auto last = static_cast<float>(samples.shape()[axis] - 1);
-  const std::vector<Vec3f> before = moved(mesh.positions, axis, -1, last), after = moved(mesh.positions, axis, 1, last);
+  const std::vector<Vec3f> before = moved(mesh.positions, first, axis, -1, last),
+                           after = moved(mesh.positions, first, axis, 1, last);
   const auto low = sample_at(samples, before, threads, progress);
   if (!low) return low.error();
   const auto high = sample_at(samples, after, threads, progress);
@@ -69,11 +74,11 @@ Vec3f choose(Vec3d gradient, Vec3d of_triangles) {
 
 }  // namespace
 
-Result<std::vector<Vec3f>> normals_of(const IndexedMesh& mesh, const BrickedVolume& samples, bool mirrored, int threads,
-                                      const Progress& progress) {
+Result<std::vector<Vec3f>> normals_of(const IndexedMesh& mesh, const BrickedVolume& samples, GridIndex first,
+                                      bool mirrored, int threads, const Progress& progress) {
   std::vector<Vec3d> gradient(mesh.positions.size());
   for (int axis = 0; axis < 3; ++axis) {
-    const auto slope = slopes(mesh, samples, axis, threads, progress);
+    const auto slope = slopes(mesh, samples, first, axis, threads, progress);
     if (!slope) return slope.error();
     for (std::size_t v = 0; v < gradient.size(); ++v) gradient[v][axis] = (*slope)[v];
   }

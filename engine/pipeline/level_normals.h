@@ -18,9 +18,10 @@ namespace geosis {
 /// differ by more than 37 degrees, or the gradient is not known.
 ///
 /// samples   those that the mesh was extracted from.
+/// first     where their node (0, 0, 0) lies in the mesh's coordinates.
 /// mirrored  the triangles look outwards in a mirrored space, into the body in index coordinates.
 /// errors    malformed_input: a damaged brick.  cancelled.
-Result<std::vector<Vec3f>> normals_of(const IndexedMesh& mesh, const BrickedVolume& samples, bool mirrored, int threads,
-                                      const Progress& progress);
+Result<std::vector<Vec3f>> normals_of(const IndexedMesh& mesh, const BrickedVolume& samples, GridIndex first,
+                                      bool mirrored, int threads, const Progress& progress);
 
 }  // namespace geosis

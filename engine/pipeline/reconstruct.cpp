@@ -10,6 +10,7 @@
 
 #include "engine/pipeline/certify.h"
 #include "engine/pipeline/finish_levels.h"
+#include "engine/pipeline/grid_stage.h"
 #include "engine/pipeline/level_attributes.h"
 #include "engine/pipeline/output_space.h"
 #include "engine/pipeline/stages.h"
@@ -42,11 +43,14 @@ struct Run {
   const ReconstructInput& input;
   const ReconstructOptions& options;
   const AffineGeometry& space;  ///< from index coordinates to the requested space
+  const LayerMap* layers;       ///< of the structural grid; null on the axis grid
   EncodeOptions encode;
   Progress& progress;
   StageTimings& timings;
   const LevelSink& on_level;
 
+  /// The layers when meshes stay on the rectified grid.
+  const LayerMap* rectified() const { return options.index_space ? layers : nullptr; }
   CertifyOptions certify() const { return {space, input.has_lengths, options.threads}; }
 };
 
@@ -96,15 +100,16 @@ BuildLodsOptions simplification(const ReconstructOptions& options, const Progres
 /// Everything after M0: levels are simplified one by one, and finished beside that and after it.
 class Levels {
  public:
-  Levels(LabelledSurface m0, const StageSamples& samples, const Run& run)
+  Levels(StageSurface extracted, const StageSamples& samples, const Run& run)
       : run_(run),
-        body_(std::move(m0.body)),
+        rectified_(std::move(extracted.rectified)),
+        body_(std::move(extracted.surface.body)),
         levels_(run.options.levels.size()),
         m0_(begins_with_m0(run.options.levels) ? levels_.front().lod.mesh : m0_apart_),
         comparison_(m0_, run.certify(), run.progress),
         finisher_(finish_options(samples), m0_, run.options.threads - 1, run.progress) {
     for (std::size_t k = 0; k < levels_.size(); ++k) levels_[k].asked = run.options.levels[k];
-    m0_ = std::move(m0.mesh);
+    m0_ = std::move(extracted.surface.mesh);
   }
 
   Result<Reconstruction> make() {
@@ -112,17 +117,22 @@ class Levels {
     if (made) made = timed(run_.timings.encode, [&] { return finish(); });
     if (made) made = timed(run_.timings.certify, [&] { return compare(); });
     if (!made) return std::move(made).error();
-    return Reconstruction{std::move(levels_)};
+    return Reconstruction{.grid = std::nullopt, .levels = std::move(levels_)};
   }
 
  private:
   FinishOptions finish_options(const StageSamples& samples) const {
     const ReconstructOptions& options = run_.options;
+    const bool is_rectified = run_.rectified() != nullptr;
     return {.sources = {.filled = samples.filled,
                         .body = options.attributes.body ? std::span(body_) : std::span<const std::uint32_t>(),
-                        .normals = options.normals ? samples.samples : nullptr,
+                        .normals = !options.normals ? nullptr
+                                   : is_rectified   ? rectified_.samples.get()
+                                                    : samples.samples,
+                        .normals_first = is_rectified ? rectified_.first : GridIndex{},
                         .mirrored = run_.space.mirrored(),
                         .value = options.attributes.value ? run_.input.attribute_volume : nullptr,
+                        .rectified = run_.rectified(),
                         .threads = options.threads},
             .keep_reliability = options.attributes.reliability,
             .encode = run_.encode,
@@ -176,6 +186,7 @@ class Levels {
   }
 
   const Run& run_;
+  const RectifiedVolume rectified_;
   const std::vector<std::uint32_t> body_;
   std::vector<ReconstructedLevel> levels_;
   IndexedMesh m0_apart_;  // when it is no level
@@ -187,11 +198,12 @@ class Levels {
 Result<Reconstruction> run_stages(const Run& run) {
   auto samples = timed(run.timings.fill, [&] { return fill_stage(run.input, run.options, run.progress); });
   if (!samples) return std::move(samples).error();
-  const ExtractStage stage{.bodies = run.options.attributes.body, .mirrored = run.space.mirrored()};
+  const ExtractStage stage{
+      .bodies = run.options.attributes.body, .mirrored = run.space.mirrored(), .layers = run.layers};
   auto m0 =
       timed(run.timings.extract, [&] { return extract_stage(*samples->samples, run.options, stage, run.progress); });
   if (!m0) return std::move(m0).error();
-  if (m0->mesh.triangles.empty()) return Reconstruction{};
+  if (m0->surface.mesh.triangles.empty()) return Reconstruction{};
   if (run.progress.cancelled()) return kCancelled;
   return Levels(*std::move(m0), *samples, run).make();
 }
@@ -203,17 +215,25 @@ Result<Reconstruction> reconstruct(const ReconstructInput& input, const Reconstr
   if (options.levels.empty()) return Error{ErrorCode::invalid_argument, "no levels asked for"};
   const auto space = output_space(input.geometry, options);
   if (!space) return space.error();
-  auto encode = choose_encoding(input.samples.shape(), *space, options);
-  if (!encode) return std::move(encode).error();
   if (auto checked = check_attribute_volume(input, options); !checked) return std::move(checked).error();
   StageTimings unread;
-  return run_stages({.input = input,
-                     .options = options,
-                     .space = *space,
-                     .encode = *encode,
-                     .progress = progress,
-                     .timings = timings != nullptr ? *timings : unread,
-                     .on_level = on_level});
+  StageTimings& spent = timings != nullptr ? *timings : unread;
+  auto grid = timed(spent.grid, [&] { return grid_stage(input, options, progress); });
+  if (!grid) return std::move(grid).error();
+  const bool is_rectified = grid->structural != nullptr && options.index_space;
+  auto encode = choose_encoding(is_rectified ? grid->structural->paths.grid() : input.samples.shape(), *space, options);
+  if (!encode) return std::move(encode).error();
+  const std::optional<LayerMap> layers = layer_map(*grid, input.samples.shape(), options);
+  auto result = run_stages({.input = input,
+                            .options = options,
+                            .space = *space,
+                            .layers = layers ? &*layers : nullptr,
+                            .encode = *encode,
+                            .progress = progress,
+                            .timings = spent,
+                            .on_level = on_level});
+  if (result) result->grid = grid->report;
+  return result;
 }
 
 }  // namespace geosis

@@ -19,6 +19,7 @@
 #include "engine/missing/fill_options.h"
 #include "engine/missing/filled_volume.h"
 #include "engine/simplify/build_lods.h"
+#include "engine/structure/structural_grid.h"
 #include "engine/volume/bricks.h"
 #include "engine/volume/geometry.h"
 #include "engine/volume/grid.h"
@@ -45,12 +46,20 @@ struct BodyChoice {
   BodyFilter filter() const { return {.seeded = !seeds.empty(), .min_voxels = min_voxels, .largest = largest}; }
 };
 
+/// How samples of neighbouring traces are connected.
+enum class GridChoice {
+  given,       ///< those of equal index
+  structural,  ///< those on one reflector, on a grid found from the samples
+  automatic,   ///< structural where reflectors are steep enough for it to pay
+};
+
 /// The request's part that the engine computes from; documents/ turns JSON into it.
 struct ReconstructOptions {
   IsoRange range{};
   BodyMode mode = BodyMode::exact;
   bool cap = true;
-  FillOptions fill = {};                         ///< of missing samples, before anything else
+  FillOptions fill = {};  ///< of missing samples, before anything else
+  GridChoice grid = GridChoice::given;
   std::optional<GridBox> region = std::nullopt;  ///< unset = the whole volume
   BodyChoice bodies = BodyChoice();
   std::vector<LevelTarget> levels = by_ratio({1, 0.25, 0.0625, 0.015625, 0.00390625});
@@ -86,14 +95,22 @@ struct ReconstructedLevel {
   double interpolated_share = 0;                ///< of the vertices: between samples of which one was filled
 };
 
+/// Which grid was chosen and why, where the choice was not the given one.
+struct GridReport {
+  DipReport dips;                            ///< what `auto` decides by
+  std::optional<StructureReport> structure;  ///< of the structural grid; unset where samples stay connected as given
+  std::int32_t layers = 0;                   ///< of the structural grid
+};
+
 struct Reconstruction {
+  std::optional<GridReport> grid;          ///< unset when the given grid was asked for
   std::vector<ReconstructedLevel> levels;  ///< level 0 = finest; empty when nothing is in the range
 };
 
 /// Seconds of each stage on the caller's clock, for the caller's eyes only: never part of a result. Levels are encoded
 /// and described by spare threads while finer and coarser ones are made: `encode` is what is left of that afterwards.
 struct StageTimings {
-  double fill = 0, extract = 0, simplify = 0, encode = 0, certify = 0;
+  double grid = 0, fill = 0, extract = 0, simplify = 0, encode = 0, certify = 0;
 };
 
 /// Told of each level, coarsest first, as soon as it is encoded and its topology and measures are known; its distance
@@ -106,13 +123,21 @@ struct ReconstructInput {
   const GridGeometry& geometry;  ///< from index coordinates to the world
   bool has_lengths = true;       ///< the world's three axes have one unit: lengths, areas and volumes mean something
   const FilledVolume* filled = nullptr;  ///< samples with options.fill applied; null = filled here when asked for
+  const StructuralGrid* grid = nullptr;  ///< the samples' structural grid; null = laid here when it is needed
+  const DipReport* dips = nullptr;       ///< of the samples; null = found here when they are needed
   const BrickedVolume* attribute_volume = nullptr;  ///< of equal shape; what the attribute `value` is of
 };
 
-/// The whole way: volume -> filled volume -> M0 -> levels -> encoded parts -> certificate. The only place where the
-/// order of stages is written down. The result is a pure function of input and options (threads excepted).
+/// The whole way: volume -> grid -> filled volume -> M0 -> levels -> encoded parts -> certificate. The only place where
+/// the order of stages is written down. The result is a pure function of input and options (threads excepted).
 ///
-/// errors     those of fill_missing, extract_body, build_lods and encode_level.  invalid_argument: position bits that
+/// A structural grid is where the surface is extracted: its topology is that of the field which is trilinear in the
+/// grid's cells. In world space the vertices then go to where the samples are, and simplification, distances and
+/// volumes are of that mesh, in the coordinates (inline, crossline, sample); `space: index` stays on the rectified grid
+/// (inline, crossline, layer). docs/structural-grid.md.
+///
+/// errors     those of lay_structural_grid, fill_missing, extract_body, build_lods and encode_level.  invalid_argument:
+/// position bits that
 ///            cannot hold the volume, `value` without its volume, or with one of another shape.  unsupported: world
 ///            space of a geometry that is not affine.  cancelled.
 Result<Reconstruction> reconstruct(const ReconstructInput& input, const ReconstructOptions& options, Progress& progress,

@@ -1,11 +1,62 @@
 #include "engine/pipeline/stages.h"
 
+#include <algorithm>
 #include <utility>
 
+#include "engine/isosurface/brick_sweep.h"
+#include "engine/isosurface/renumber_bodies.h"
 #include "engine/isosurface/select_bodies.h"
+#include "engine/mesh/empty_edges.h"
 #include "engine/missing/fill.h"
 
 namespace geosis {
+namespace {
+
+Result<LabelledSurface> extract_unlabelled(const BrickedVolume& samples, IsoRange range, const ExtractOptions& options,
+                                           Progress& progress) {
+  auto mesh = extract_body(samples, range, options, progress);
+  if (!mesh) return std::move(mesh).error();
+  LabelledSurface surface;
+  surface.mesh = *std::move(mesh);
+  return surface;
+}
+
+/// The seed's first node on the rectified grid; one that is nowhere for a seed outside the region.
+GridIndex rectified_seed(const LayerMap& layers, GridIndex first, GridIndex seed) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (seed[axis] < layers.region().first[axis] || seed[axis] > layers.region().last[axis]) return {-1, -1, -1};
+  }
+  const std::int32_t layer = std::max(layers.paths().layer_of(seed.i, seed.j, seed.k), first.k);
+  return {seed.i - first.i, seed.j - first.j, layer - first.k};
+}
+
+/// Labels on a rectified grid, whose node (0, 0, 0) is `first`: every sample counts once.
+void follow_layers(const LayerMap& layers, GridIndex first, LabelOptions& labels) {
+  for (GridIndex& seed : labels.seeds) seed = rectified_seed(layers, first, seed);
+  labels.counted = [&layers, first](std::int32_t i, std::int32_t j, std::int32_t k, int count) {
+    return first_passes(layers, first.i + i, first.j + j, first.k + k, count, first.k);
+  };
+}
+
+/// From the rectified grid's own numbering to the volume's: to the samples' places, or in index space to the whole
+/// grid's layers.
+Result<void> leave_layers(const LayerMap& layers, GridIndex first, const ReconstructOptions& options, bool mirrored,
+                          const Progress& progress, LabelledSurface& surface) {
+  const Vec3f shift = {static_cast<float>(first.i), static_cast<float>(first.j), static_cast<float>(first.k)};
+  for (Vec3f& p : surface.mesh.positions) p = p + shift;
+  if (options.index_space || surface.mesh.triangles.empty()) return {};
+  surface.mesh.positions = to_samples(layers, surface.mesh.positions, options.threads);
+  const auto index = collapse_empty_edges(surface.mesh, progress);
+  if (!index) return index.error();
+  for (std::size_t v = 0; v < surface.body.size(); ++v) {
+    if ((*index)[v] >= 0) surface.body[static_cast<std::size_t>((*index)[v])] = surface.body[v];
+  }
+  if (!surface.body.empty()) surface.body.resize(surface.mesh.positions.size());
+  renumber_bodies(surface, options.cap, mirrored);
+  return {};
+}
+
+}  // namespace
 
 Result<StageSamples> fill_stage(const ReconstructInput& input, const ReconstructOptions& options, Progress& progress) {
   if (options.fill.method == FillMethod::none || !has_missing(input.samples)) {
@@ -19,25 +70,37 @@ Result<StageSamples> fill_stage(const ReconstructInput& input, const Reconstruct
   return stage;
 }
 
-Result<LabelledSurface> extract_stage(const BrickedVolume& samples, const ReconstructOptions& options,
-                                      const ExtractStage& stage, Progress& progress) {
+Result<StageSurface> extract_stage(const BrickedVolume& samples, const ReconstructOptions& options,
+                                   const ExtractStage& stage, Progress& progress) {
   ExtractOptions extract;
   extract.mode = options.mode;
   extract.cap = options.cap;
   extract.region = options.region.value_or(whole(samples.shape()));
   extract.mirrored = stage.mirrored;
   extract.threads = options.threads;
-  if (!stage.bodies && !stage.amplitudes && options.bodies.keeps_all()) {
-    auto mesh = extract_body(samples, options.range, extract, progress);
-    if (!mesh) return std::move(mesh).error();
-    LabelledSurface surface;
-    surface.mesh = *std::move(mesh);
-    return surface;
+  LabelOptions labels{.amplitudes = stage.amplitudes, .seeds = options.bodies.seeds};
+  const bool is_labelled = stage.bodies || stage.amplitudes || !options.bodies.keeps_all();
+  StageSurface result;
+  const BrickedVolume* field = &samples;
+  if (stage.layers != nullptr) {
+    if (auto fits = check_request(samples.shape(), options.range, extract); !fits) return std::move(fits).error();
+    auto rectified = rectify(samples, *stage.layers, options.threads, progress);
+    if (!rectified) return std::move(rectified).error();
+    result.rectified = *std::move(rectified);
+    field = result.rectified.samples.get();
+    extract.region = whole(field->shape());
+    follow_layers(*stage.layers, result.rectified.first, labels);
   }
-  const LabelOptions labels{.amplitudes = stage.amplitudes, .seeds = options.bodies.seeds};
-  auto surface = extract_labelled_body(samples, options.range, extract, labels, progress);
-  if (surface) select_bodies(*surface, options.bodies.filter());
-  return surface;
+  auto surface = is_labelled ? extract_labelled_body(*field, options.range, extract, labels, progress)
+                             : extract_unlabelled(*field, options.range, extract, progress);
+  if (!surface) return std::move(surface).error();
+  result.surface = *std::move(surface);
+  if (stage.layers != nullptr) {
+    auto left = leave_layers(*stage.layers, result.rectified.first, options, stage.mirrored, progress, result.surface);
+    if (!left) return std::move(left).error();
+  }
+  if (is_labelled) select_bodies(result.surface, options.bodies.filter());
+  return result;
 }
 
 }  // namespace geosis

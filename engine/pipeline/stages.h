@@ -6,6 +6,8 @@
 #include "engine/base/result.h"
 #include "engine/isosurface/labelled_surface.h"
 #include "engine/pipeline/reconstruct.h"
+#include "engine/structure/layer_map.h"
+#include "engine/structure/rectified_volume.h"
 
 namespace geosis {
 
@@ -16,18 +18,25 @@ struct StageSamples {
   std::unique_ptr<FilledVolume> made;      ///< keeps a fill that nobody had before
 };
 
-/// First stage: missing samples filled as the options say, by the input's own fill where it has one.
+/// Second stage: missing samples filled as the options say, by the input's own fill where it has one.
 Result<StageSamples> fill_stage(const ReconstructInput& input, const ReconstructOptions& options, Progress& progress);
 
 /// What the surface is needed with, besides what the options' filter of bodies needs.
 struct ExtractStage {
-  bool bodies = false;      ///< labels
-  bool amplitudes = false;  ///< labels, and the samples of each body
-  bool mirrored = false;    ///< the requested space mirrors
+  bool bodies = false;               ///< labels
+  bool amplitudes = false;           ///< labels, and the samples of each body
+  bool mirrored = false;             ///< the requested space mirrors
+  const LayerMap* layers = nullptr;  ///< of the structural grid, cut to the region; null = the axis grid
 };
 
-/// Second stage: M0, with the bodies kept that the options ask for. Without need of labels the surface has none.
-Result<LabelledSurface> extract_stage(const BrickedVolume& samples, const ReconstructOptions& options,
-                                      const ExtractStage& stage, Progress& progress);
+/// M0, and what of the structural grid later stages need.
+struct StageSurface {
+  LabelledSurface surface;
+  RectifiedVolume rectified;  ///< without samples on the axis grid
+};
+
+/// Third stage: M0, with the bodies kept that the options ask for. Without need of labels the surface has none.
+Result<StageSurface> extract_stage(const BrickedVolume& samples, const ReconstructOptions& options,
+                                   const ExtractStage& stage, Progress& progress);
 
 }  // namespace geosis

@@ -22,22 +22,32 @@ Json timings_document(const std::optional<ExtractionTimings>& timings) {
 }  // namespace
 
 Extraction::Snapshot Extraction::snapshot() const {
-  const std::lock_guard lock(mutex_);
   Snapshot now;
-  now.levels = levels_;
-  now.manifest = manifest_;
-  now.timings = timings_;
+  std::string manifest;
+  {
+    const std::lock_guard lock(mutex_);
+    now.levels = levels_;
+    now.timings = timings_;
+    manifest = manifest_;
+  }
   JobStatus status = face_->status();
   now.state = status.state;
   now.stage = std::move(status.stage);
   now.progress = status.progress;
   now.error = std::move(status.error);
-  if (manifest_) {  // the manifest is the truth, a moment before the face says so
+  if (!manifest.empty()) {  // the manifest is the truth, a moment before the face says so
+    now.manifest = Json::parse(manifest);
+    now.levels.assign(now.manifest->at("levels").rbegin(), now.manifest->at("levels").rend());
     now.state = JobState::done;
     now.progress = 1;
     now.error.reset();
   }
   return now;
+}
+
+bool Extraction::is_done() const {
+  const std::lock_guard lock(mutex_);
+  return !manifest_.empty();
 }
 
 Job::Subscription Extraction::subscribe(std::function<void()> bell) {
@@ -82,6 +92,7 @@ void Extraction::report(const char* stage, double fraction) {
 void Extraction::add_level(Json entry) {
   {
     const std::lock_guard lock(mutex_);
+    if (!manifest_.empty()) return;
     for (const Json& known : levels_) {
       if (known.at("level") == entry.at("level")) return;
     }
@@ -90,11 +101,11 @@ void Extraction::add_level(Json entry) {
   face_->ring();
 }
 
-void Extraction::complete(Json manifest, std::optional<ExtractionTimings> timings) {
+void Extraction::complete(const Json& manifest, std::optional<ExtractionTimings> timings) {
   {
     const std::lock_guard lock(mutex_);
-    levels_.assign(manifest.at("levels").rbegin(), manifest.at("levels").rend());
-    manifest_ = std::move(manifest);
+    levels_ = {};
+    manifest_ = manifest.dump(-1, ' ', false, Json::error_handler_t::replace);
     timings_ = std::move(timings);
   }
   face_->finish({});

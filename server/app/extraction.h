@@ -57,6 +57,7 @@ class Extraction {
   void wait_for(std::chrono::milliseconds time) const { face_->wait_for(time); }
   /// Done, failed or cancelled. Quicker than a snapshot.
   bool has_ended() const { return is_final(face_->status().state); }
+  bool is_done() const;
   /// A reader of the answer itself went away: takes one interest away, or ends what is not stored. At once; nobody
   /// waits for it to be durable.
   void abandon();
@@ -72,7 +73,7 @@ class Extraction {
   /// One that is known already is not added again.
   void add_level(Json entry);
   /// Done. Levels take the manifest's full entries.
-  void complete(Json manifest, std::optional<ExtractionTimings> timings);
+  void complete(const Json& manifest, std::optional<ExtractionTimings> timings);
   /// Ended without a result.
   void fail(Error error) { face_->finish(std::move(error)); }
   /// Nobody wants it any more: it ends as cancelled, the work in this process with it.
@@ -89,8 +90,8 @@ class Extraction {
   std::atomic<int> abandoned_{0};
   mutable std::mutex mutex_;
   std::shared_ptr<Job> work_;
-  std::vector<Json> levels_;
-  std::optional<Json> manifest_;
+  std::vector<Json> levels_;  ///< until the manifest has them
+  std::string manifest_;      ///< its text, a twentieth of its size as a value; empty until it is done
   std::optional<ExtractionTimings> timings_;
 };
 

@@ -98,7 +98,7 @@ Result<void> Extractions::compute(Extraction& extraction, const std::string& own
   if (!manifest) return volumes_.judged(identity.volume, manifest.error());
   if (!watch_.holds(extraction, owner)) return Error{ErrorCode::cancelled, "nobody wants it, or others compute it"};
   if (auto done = write_document(key(identity.id, kManifest), *manifest); !done) return done;
-  extraction.complete(*std::move(manifest), timings);
+  extraction.complete(*manifest, timings);
   if (events_.computed) events_.computed(identity, timings);
   return {};
 }
@@ -188,7 +188,7 @@ Result<std::shared_ptr<Extraction>> Extractions::create_transient(const ByteSour
           held->fail(manifest.error());
           return std::move(manifest).error();
         }
-        held->complete(*std::move(manifest), timings);
+        held->complete(*manifest, timings);
         return {};
       });
   if (!job) return std::move(job).error();

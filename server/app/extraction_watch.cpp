@@ -214,7 +214,7 @@ void ExtractionWatch::withdraw_abandoned(Extraction& extraction) {
 bool ExtractionWatch::follow_one(const std::shared_ptr<Extraction>& extraction, Watched& watched) {
   if (exists(*extraction, kManifest)) {
     if (auto manifest = read(*extraction, kManifest)) {
-      extraction->complete(*std::move(manifest), std::nullopt);
+      extraction->complete(*manifest, std::nullopt);
       return false;
     }
   }

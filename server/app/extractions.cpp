@@ -59,7 +59,7 @@ std::shared_ptr<Extractions::Entry> Extractions::entry_of(const std::string& id)
   if (entries_.size() >= kMostEntries) {
     std::erase_if(entries_, [](const auto& entry) {
       const auto& held = entry.second;
-      return held.use_count() == 1 && (!held->extraction || is_final(held->extraction->snapshot().state));
+      return held.use_count() == 1 && (!held->extraction || held->extraction->has_ended());
     });
   }
   auto& entry = entries_[id];
@@ -143,7 +143,7 @@ Result<bool> Extractions::load_for_create(Entry& entry, const std::string& id) {
 
 Result<bool> Extractions::join(Entry& entry) {
   const Extraction& known = *entry.extraction;
-  if (known.snapshot().manifest) return true;
+  if (known.is_done()) return true;
   if (known.has_ended() || known.is_cancelled()) return false;
   const auto record = records_.update(known.identity().id, [&](RunRecord& changed) {
     if (changed.state != RunRecord::State::wanted || changed.owner.empty()) return false;
@@ -221,7 +221,7 @@ Result<std::shared_ptr<Extraction>> Extractions::find(const std::string& id) {
 void Extractions::drop_outdated(Entry& entry) const {
   if (!entry.extraction || !entry.extraction->has_ended()) return;
   const auto is_done = store_.exists(key(entry.extraction->identity().id, kManifest));
-  if (!entry.extraction->snapshot().manifest || (is_done && !*is_done)) entry.extraction.reset();
+  if (!entry.extraction->is_done() || (is_done && !*is_done)) entry.extraction.reset();
 }
 
 /// From the store: done, ended otherwise, or only asked for; that is followed, and computed here if nobody does.
@@ -234,7 +234,7 @@ Result<std::shared_ptr<Extraction>> Extractions::load(Entry& entry, const std::s
       part_reader(id));
   auto manifest = read_document(id, kManifest);
   if (manifest) {
-    extraction->complete(*std::move(manifest), std::nullopt);
+    extraction->complete(*manifest, std::nullopt);
     return entry.extraction = std::move(extraction);
   }
   if (manifest.error().code != ErrorCode::not_found) return std::move(manifest).error();

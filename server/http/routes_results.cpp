@@ -54,7 +54,7 @@ Reply file_reply(Result<LevelFile> file, const char* type, const std::string& tr
 Reply bodies(Services services, const Request& request) {
   const auto extraction = services.extractions.find(request.captures[0]);
   if (!extraction) return error_reply(extraction.error());
-  if (!(*extraction)->snapshot().manifest) return not_done(**extraction);
+  if (!(*extraction)->is_done()) return not_done(**extraction);
   const auto answer = [services, id = request.captures[0]] {
     return file_reply(services.extractions.bodies(id), "application/json", "");
   };
@@ -134,7 +134,7 @@ Reply level(Services services, const Request& request) {
   const std::string &id = request.captures[0], format = request.captures[2];
   const auto extraction = services.extractions.find(id);
   if (!extraction) return error_reply(extraction.error());
-  if (!(*extraction)->snapshot().manifest) return not_done(**extraction);
+  if (!(*extraction)->is_done()) return not_done(**extraction);
   const LevelFormat wanted = *level_format_of(format);  // the route lets no other through
   const int number = small_number(request.captures[1]);
   const auto answer = [services, id, number, wanted, name = name_of(request)] {

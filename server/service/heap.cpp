@@ -1,8 +1,17 @@
 #include "server/service/heap.h"
 
+#include <algorithm>
+#include <thread>
+
 #include <malloc.h>
 
 namespace geosis::server {
+
+void share_heap_arenas() {
+  constexpr int kFewest = 2;
+  const int processors = static_cast<int>(std::thread::hardware_concurrency());
+  ::mallopt(M_ARENA_MAX, std::max(kFewest, processors / 2));
+}
 
 void HeapTrimmer::operator()() {
   using Clock = std::chrono::steady_clock;

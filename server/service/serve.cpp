@@ -184,6 +184,7 @@ std::string host_of(const std::string& listen) {
 }  // namespace
 
 Result<void> serve(const ServeOptions& options) {
+  share_heap_arenas();
   const auto keys = read_keys(options);
   if (!keys) return keys.error();
   StopSignals signals;  // before the first thread starts, so that every thread inherits the mask

@@ -84,8 +84,6 @@ class Extractions {
 
   /// Takes one interest away; without any left the work stops, durably.
   Result<void> withdraw(const std::string& id);
-  /// The same for a reader who went away, of just this extraction and at once: nobody waits for it to be durable.
-  static void abandon(Extraction& extraction) { extraction.abandon(); }
   /// Removes a stored result.
   Result<void> purge(const std::string& id);
   /// Removes all that was derived from a volume: results, and its filled samples.

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cstring>
 #include <fstream>
-#include <mutex>
 #include <utility>
+#include <variant>
 
-#include "server/app/problem.h"
+#include "server/app/extraction_feed.h"
 #include "server/store/piece_sums.h"
 
 namespace geosis::server {
@@ -80,125 +80,67 @@ class FileStream final : public PieceStream {
   std::size_t next_ = 0;
 };
 
-/// Carries the extraction's bell to whoever waits for the stream, and remembers a ring that nobody waited for.
-class Bell {
- public:
-  void set(std::function<void()> listener) {
-    const std::lock_guard lock(mutex_);
-    listener_ = std::move(listener);
-    if (rung_ && listener_) listener_();
+const char* name_of(ExtractionEvent::Kind kind) {
+  switch (kind) {
+    case ExtractionEvent::Kind::progress:
+      return "progress";
+    case ExtractionEvent::Kind::level:
+      return "level";
+    case ExtractionEvent::Kind::done:
+      return "done";
+    case ExtractionEvent::Kind::failed:
+      return "failed";
   }
-  void ring() {
-    const std::lock_guard lock(mutex_);
-    rung_ = true;
-    if (listener_) listener_();
-  }
-  void clear() {
-    const std::lock_guard lock(mutex_);
-    rung_ = false;
-  }
-
- private:
-  std::mutex mutex_;
-  std::function<void()> listener_;
-  bool rung_ = false;
-};
-
-/// A stream of what becomes known of an extraction.
-class ExtractionStream : public PieceStream {
- public:
-  explicit ExtractionStream(std::shared_ptr<Extraction> extraction)
-      : extraction_(std::move(extraction)), subscription_(extraction_->subscribe([bell = bell_] { bell->ring(); })) {}
-  void on_ready(std::function<void()> listener) final { bell_->set(std::move(listener)); }
-
- protected:
-  const std::shared_ptr<Extraction> extraction_;
-
-  Result<Pulled::State> next_piece(std::string& piece) final {
-    bell_->clear();  // before looking: what comes later rings again
-    return next_news(piece, extraction_->snapshot());
-  }
-  virtual Result<Pulled::State> next_news(std::string& piece, const Extraction::Snapshot& now) = 0;
-
- private:
-  const std::shared_ptr<Bell> bell_ = std::make_shared<Bell>();
-  const Job::Subscription subscription_;
-};
-
-void add_event(std::string& piece, const char* name, const Json& data, std::uint64_t id = 0) {
-  if (id > 0) piece += "id: " + std::to_string(id) + "\n";
-  piece +=
-      std::string("event: ") + name + "\ndata: " + data.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n\n";
+  return "";
 }
 
-class EventStream final : public ExtractionStream {
+class EventStream final : public PieceStream {
  public:
-  EventStream(std::shared_ptr<Extraction> extraction, std::uint64_t after)
-      : ExtractionStream(std::move(extraction)), told_(after) {}
+  EventStream(std::shared_ptr<Extraction> extraction, std::uint64_t after) : feed_(std::move(extraction), after) {}
+  void on_ready(std::function<void()> bell) override { feed_.on_ready(std::move(bell)); }
   std::string_view idle_text() const override { return ":\n\n"; }
 
  private:
-  Result<Pulled::State> next_news(std::string& piece, const Extraction::Snapshot& now) override {
-    if (ended_) return Pulled::State::end;
-    for (; told_ < now.levels.size(); ++told_) add_event(piece, "level", now.levels[told_], told_ + 1);
-    if (is_final(now.state)) {
-      ended_ = true;
-      const std::uint64_t id = now.levels.size() + 1;
-      if (now.state == JobState::done)
-        add_event(piece, "done", resource_document(*extraction_), id);
-      else
-        add_event(piece, "failed", problem_document(now.error.value_or(Error{ErrorCode::cancelled, "cancelled"})), id);
-      return Pulled::State::data;
-    }
-    const std::pair progress{now.stage, static_cast<int>(now.progress * 100)};
-    if (progress != shown_) {
-      shown_ = progress;
-      add_event(piece, "progress", {{"stage", now.stage}, {"progress", now.progress}});
-    }
-    return piece.empty() ? Pulled::State::wait : Pulled::State::data;
+  Result<Pulled::State> next_piece(std::string& piece) override {
+    const auto next = feed_.next();
+    if (std::holds_alternative<NothingYet>(next)) return Pulled::State::wait;
+    if (std::holds_alternative<NoMore>(next)) return Pulled::State::end;
+    const auto& event = std::get<ExtractionEvent>(next);
+    if (event.id > 0) piece += "id: " + std::to_string(event.id) + "\n";
+    piece += std::string("event: ") + name_of(event.kind) +
+             "\ndata: " + event.data.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n\n";
+    return Pulled::State::data;
   }
 
-  std::uint64_t told_;  // levels that the reader knows
-  std::pair<std::string, int> shown_{"", -1};
-  bool ended_ = false;
+  EventFeed feed_;
 };
 
-class LevelStream final : public ExtractionStream {
+class LevelStream final : public PieceStream {
  public:
   LevelStream(std::shared_ptr<Extraction> extraction, std::string boundary, std::function<void()> abandoned)
-      : ExtractionStream(std::move(extraction)), boundary_(std::move(boundary)), abandoned_(std::move(abandoned)) {}
-  ~LevelStream() override {
-    if (!ended_ && abandoned_) abandoned_();
-  }
+      : feed_(std::move(extraction), {.abandoned = std::move(abandoned)}), boundary_(std::move(boundary)) {}
+  void on_ready(std::function<void()> bell) override { feed_.on_ready(std::move(bell)); }
 
  private:
-  Result<Pulled::State> next_news(std::string& piece, const Extraction::Snapshot& now) override {
-    if (ended_) return Pulled::State::end;
-    if (level_ < now.levels.size()) return add_part(piece, now.levels[level_]);
-    if (now.manifest) {
-      add_manifest(piece, *now.manifest);
-      ended_ = true;
-      return Pulled::State::data;
-    }
-    if (!is_final(now.state)) return Pulled::State::wait;
-    return now.error.value_or(Error{ErrorCode::cancelled, "the extraction was cancelled"});
+  Result<Pulled::State> next_piece(std::string& piece) override {
+    const auto next = feed_.next();
+    if (!next) return next.error();
+    if (std::holds_alternative<NothingYet>(*next)) return Pulled::State::wait;
+    if (std::holds_alternative<NoMore>(*next)) return Pulled::State::end;
+    if (const auto* manifest = std::get_if<Json>(&*next))
+      add_manifest(piece, *manifest);
+    else
+      add_part(piece, std::get<LevelPart>(*next));
+    return Pulled::State::data;
   }
 
-  Result<Pulled::State> add_part(std::string& piece, const Json& entry) {
-    const int level = entry.at("level").get<int>();
-    const auto bytes = extraction_->read_part(level, part_);
-    if (!bytes) return bytes.error();
-    begin(piece, "model/vnd.google.draco", bytes->size());
-    piece += "X-Geosis-Level: " + std::to_string(level) + "\r\nX-Geosis-Part: " + std::to_string(part_) +
-             "\r\nX-Geosis-Parts: " + std::to_string(entry.at("parts").size()) +
-             "\r\nX-Geosis-Preview: " + (entry.at("preview").get<bool>() ? "true" : "false") + "\r\n\r\n";
-    piece.append(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+  void add_part(std::string& piece, const LevelPart& part) const {
+    begin(piece, "model/vnd.google.draco", part.bytes.size());
+    piece += "X-Geosis-Level: " + std::to_string(part.level) + "\r\nX-Geosis-Part: " + std::to_string(part.part) +
+             "\r\nX-Geosis-Parts: " + std::to_string(part.parts) +
+             "\r\nX-Geosis-Preview: " + (part.is_preview ? "true" : "false") + "\r\n\r\n";
+    piece.append(reinterpret_cast<const char*>(part.bytes.data()), part.bytes.size());
     piece += "\r\n";
-    if (++part_ == static_cast<int>(entry.at("parts").size())) {
-      part_ = 0;
-      ++level_;
-    }
-    return Pulled::State::data;
   }
 
   void add_manifest(std::string& piece, const Json& manifest) const {
@@ -211,11 +153,8 @@ class LevelStream final : public ExtractionStream {
     piece += "--" + boundary_ + "\r\nContent-Type: " + type + "\r\nContent-Length: " + std::to_string(bytes) + "\r\n";
   }
 
+  LevelFeed feed_;
   const std::string boundary_;
-  const std::function<void()> abandoned_;
-  std::size_t level_ = 0;  // in the order of readiness
-  int part_ = 0;
-  bool ended_ = false;
 };
 
 }  // namespace
@@ -230,11 +169,6 @@ Result<std::unique_ptr<ByteStream>> file_stream(const std::string& path, std::ve
   if (!file) return Error{ErrorCode::not_found, "a stored file is gone"};
   return std::unique_ptr<ByteStream>(
       std::make_unique<FileStream>(std::move(file), std::move(sums), std::move(damaged)));
-}
-
-bool knows_the_end(const Extraction& extraction, std::uint64_t after) {
-  if (after == 0 || !extraction.has_ended()) return false;
-  return after > extraction.snapshot().levels.size();
 }
 
 std::unique_ptr<ByteStream> event_stream(std::shared_ptr<Extraction> extraction, std::uint64_t after) {

@@ -20,16 +20,11 @@ std::unique_ptr<ByteStream> bytes_stream(std::vector<std::byte> bytes);
 Result<std::unique_ptr<ByteStream>> file_stream(const std::string& path, std::vector<std::uint64_t> sums,
                                                 std::function<void()> damaged);
 
-/// Server-sent events of an extraction: `progress` as it goes, `level` for each level as it is ready (id 1, 2, ...), at
-/// last `done` with the resource or `failed` with the problem (the next id). Now and then a comment, so that nobody on
-/// the way takes the connection for dead.
-///
-/// after   id of the last event that the reader knows; its levels are not told again.
-/// Whether the reader of event `after` was told the end: there is nothing more to say.
-bool knows_the_end(const Extraction& extraction, std::uint64_t after);
+/// Server-sent events of an extraction, those of EventFeed. Now and then a comment, so that nobody on the way takes the
+/// connection for dead.
 std::unique_ptr<ByteStream> event_stream(std::shared_ptr<Extraction> extraction, std::uint64_t after);
 
-/// multipart/mixed: the parts of every level as soon as it is ready, coarsest first, and the manifest last.
+/// multipart/mixed: the parts of every level and the manifest, as LevelFeed gives them.
 ///
 /// abandoned   called when the stream is destroyed before its end: the reader went away.
 std::unique_ptr<ByteStream> level_stream(std::shared_ptr<Extraction> extraction, std::string boundary,

@@ -171,6 +171,18 @@ const std::array kSetters = {
            [](ImportOptions& o, std::string_view text) { return set_choice(o.zero_traces, kZeroTraces, text); }},
 };
 
+/// A JSON value as the text that set_import_option takes: arrays as comma-separated elements.
+std::string option_text(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_array()) return value.dump();
+  std::string text;
+  for (const Json& element : value) {
+    if (!text.empty()) text += ',';
+    text += element.dump();
+  }
+  return text;
+}
+
 template <class T>
 Json or_null(const std::optional<T>& value) {
   return value ? Json(*value) : Json(nullptr);
@@ -217,6 +229,14 @@ Result<void> set_import_option(ImportOptions& options, std::string_view name, st
                                                   "\"; expected " + setter.option.value};
   }
   return Error{ErrorCode::invalid_argument, "import option " + std::string(name) + ": there is no such option"};
+}
+
+Result<void> set_import_options(ImportOptions& options, const Json& document) {
+  for (const auto& [name, value] : document.items()) {
+    if (value.is_null()) continue;
+    if (auto set = set_import_option(options, name, option_text(value)); !set) return set;
+  }
+  return {};
 }
 
 Json import_options_document(const ImportOptions& options) {

@@ -23,6 +23,9 @@ std::span<const ImportOptionName> import_option_names();
 /// errors   invalid_argument: no such option, or text that it does not take.
 Result<void> set_import_option(ImportOptions& options, std::string_view name, std::string_view text);
 
+/// Sets those that a JSON object names, {"dims": [64, 64, 93], ...}; null leaves its option as it is. errors: as above.
+Result<void> set_import_options(ImportOptions& options, const Json& document);
+
 /// The canonical form: every option that the format has, unset ones as null.
 Json import_options_document(const ImportOptions& options);
 

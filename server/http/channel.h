@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "server/http/descriptor.h"
+#include "server/net/descriptor.h"
 
 namespace geosis::server::http {
 

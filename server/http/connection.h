@@ -12,10 +12,10 @@
 #include "server/http/channel.h"
 #include "server/http/dispatcher.h"
 #include "server/http/limits.h"
-#include "server/http/rate_guard.h"
 #include "server/http/reply_writer.h"
 #include "server/http/suspended.h"
 #include "server/http/upload_start.h"
+#include "server/net/rate_guard.h"
 
 namespace geosis::server::http {
 

@@ -21,14 +21,13 @@ struct StatedDigest {
 Result<std::vector<StatedDigest>> stated_digests(const Request& request);
 
 /// A body that is hashed as it is read, by every algorithm that its request states a digest of.
-class DigestedBody final : public BodyReader {
+class DigestedBody final : public CheckedBody {
  public:
   DigestedBody(BodyReader& body, std::vector<StatedDigest> stated);
   ~DigestedBody() override;
 
   Result<std::size_t> read(std::span<std::byte> into) override;
-  /// Reads what nobody has read yet, and compares. errors: those of the body; invalid_argument: it is another body.
-  Result<void> check();
+  Result<void> check() override;
 
  private:
   class Hash;

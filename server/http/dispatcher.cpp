@@ -4,7 +4,8 @@
 
 #include "server/http/conditional.h"
 #include "server/http/error_reply.h"
-#include "server/http/request_ids.h"
+#include "server/http/parameters.h"
+#include "server/net/request_ids.h"
 
 namespace geosis::server::http {
 namespace {
@@ -63,8 +64,8 @@ Router::Resolved Dispatcher::resolve(const Head& head, Clock::time_point receive
   Router::Resolved resolved = routes_.resolve(head);
   Request& request = resolved.request;
   request.received = received;
-  request.request_id = request_id_of(request);
-  request.trace_id = trace_id_of(request);
+  request.request_id = request_id_of(header(request, "x-request-id"));
+  request.trace_id = trace_id_of(header(request, "traceparent"));
   const bool has_handler =
       !std::holds_alternative<Router::NoHandler>(resolved.target) && !std::holds_alternative<Refusal>(resolved.target);
   if (middleware_ && has_handler) {
@@ -119,7 +120,8 @@ Reply Dispatcher::answer_without_handler(const Router::Resolved& resolved) const
 }
 
 Reply Dispatcher::finish(const Request& request, Reply reply, std::uint64_t bytes_in) const {
-  const std::string id = request.request_id.empty() ? request_id_of(request) : request.request_id;
+  const std::string id =
+      request.request_id.empty() ? request_id_of(header(request, "x-request-id")) : request.request_id;
   if (!reply.pending) {
     apply_conditions(request, reply);
     if (request.method != "OPTIONS") apply_cors(cors_, request, reply);

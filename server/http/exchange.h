@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "server/app/body_reader.h"
 #include "server/app/byte_stream.h"
 
 namespace geosis::server::http {
@@ -33,15 +34,6 @@ struct Request {
     const auto entry = headers.find(name);
     return entry == headers.end() ? nullptr : &entry->second;
   }
-};
-
-/// The body of an upload, pulled by its handler on a thread of its own. errors: malformed_input (framing, cut short),
-/// limit_exceeded (over the limit), deadline_exceeded (slower than the minimum rate).
-class BodyReader {
- public:
-  virtual ~BodyReader() = default;
-  /// Up to into.size() bytes; 0 at the end.
-  virtual Result<std::size_t> read(std::span<std::byte> into) = 0;
 };
 
 struct Reply;

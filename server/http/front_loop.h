@@ -11,12 +11,12 @@
 #include "server/http/body_budget.h"
 #include "server/http/connection.h"
 #include "server/http/front.h"
-#include "server/http/handler_pool.h"
-#include "server/http/listener.h"
 #include "server/http/mailbox.h"
 #include "server/http/poller.h"
 #include "server/http/tls.h"
 #include "server/http/upload_threads.h"
+#include "server/jobs/handler_pool.h"
+#include "server/net/listener.h"
 
 namespace geosis::server::http {
 

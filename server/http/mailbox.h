@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "engine/base/result.h"
-#include "server/http/descriptor.h"
 #include "server/http/reply_writer.h"
 #include "server/http/suspended.h"
+#include "server/net/descriptor.h"
 
 namespace geosis::server::http {
 

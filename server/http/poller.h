@@ -9,7 +9,7 @@
 #include <sys/epoll.h>
 
 #include "engine/base/result.h"
-#include "server/http/descriptor.h"
+#include "server/net/descriptor.h"
 
 namespace geosis::server::http {
 

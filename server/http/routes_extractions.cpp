@@ -2,8 +2,9 @@
 #include <chrono>
 #include <utility>
 
-#include "server/app/problem.h"
+#include "server/app/extraction_feed.h"
 #include "server/app/result_streams.h"
+#include "server/app/uploads.h"
 #include "server/documents/request.h"
 #include "server/http/error_reply.h"
 #include "server/http/json_reply.h"
@@ -33,13 +34,6 @@ Reply stream_reply(std::unique_ptr<ByteStream> stream, std::string type) {
 Reply level_stream_reply(std::shared_ptr<Extraction> extraction, std::function<void()> abandoned) {
   return stream_reply(level_stream(std::move(extraction), kBoundary, std::move(abandoned)),
                       std::string(kMultipart) + "; boundary=" + kBoundary);
-}
-
-/// What a stream that carries the answer itself does when its reader goes away.
-std::function<void()> abandonment(const std::shared_ptr<Extraction>& extraction) {
-  return [watched = std::weak_ptr(extraction)] {
-    if (const auto held = watched.lock()) Extractions::abandon(*held);
-  };
 }
 
 Reply accepted(const Extraction& extraction) {
@@ -136,11 +130,8 @@ Reply extract(Services services, const Request& request, BodyReader& body) {
   const auto received = receive_file(request, body, services.store);
   if (!received) return error_reply(received.error());
   if (auto added = add_form_options(received->fields, *options); !added) return error_reply(added.error());
-  const auto file = open_file(received->file->path());
-  if (!file) return error_reply(file.error());
   std::vector<GridCandidate> candidates;
-  NoProgress unwatched;
-  const auto extraction = services.extractions.create_transient(**file, *options, *wanted, unwatched, candidates);
+  const auto extraction = extract_spooled(services, *received->file, *options, *wanted, candidates);
   if (!extraction) return upload_refusal(extraction.error(), candidates);
   return level_stream_reply(*extraction, abandonment(*extraction));
 }

@@ -3,8 +3,8 @@
 #include <cstring>
 #include <utility>
 
-#include "server/app/arriving_file.h"
-#include "server/app/imports.h"
+#include "server/app/uploads.h"
+#include "server/app/volume_calls.h"
 #include "server/documents/import_options.h"
 #include "server/documents/slice_png.h"
 #include "server/documents/volume_document.h"
@@ -21,17 +21,10 @@
 namespace geosis::server::http {
 namespace {
 
-constexpr std::int64_t kLargestPage = 1000;
-
-Imports imports_of(const Services& services) {
-  return {services.store, services.volumes, services.queue};
-}
-
 /// Size of the file that the body is, when the file can be imported while it arrives.
-std::optional<std::uint64_t> arriving_bytes(const Request& request, const ImportOptions& options) {
+std::optional<std::uint64_t> arriving(const Request& request, const ImportOptions& options) {
   if (form_boundary(header(request, "content-type"))) return std::nullopt;
-  const auto expected = raw_file_bytes(options);
-  return expected ? request.content_length.value_or(*expected) : expected;
+  return arriving_bytes(options, request.content_length);
 }
 
 Reply added_reply(const Result<UploadResult>& added, const std::vector<GridCandidate>& candidates) {
@@ -41,30 +34,17 @@ Reply added_reply(const Result<UploadResult>& added, const std::vector<GridCandi
   return reply;
 }
 
-/// Imports the body as it arrives: it is written once, as bricks.
-Reply import_arriving(Services services, const Request& request, BodyReader& wire, std::uint64_t bytes,
-                      UploadOptions options) {
+Reply added_while_arriving(const Services& services, const Request& request, BodyReader& wire, std::uint64_t bytes,
+                           UploadOptions options) {
   auto stated = stated_digests(request);
   if (!stated) return error_reply(stated.error());
   DigestedBody body(wire, *std::move(stated));
-  const ArrivingFile file(bytes, [&](std::span<std::byte> into) { return body.read(into); });
-  options.confirm = [&]() -> Result<void> {
-    std::byte more{};
-    const auto count = body.read(std::span(&more, 1));
-    if (!count) return count.error();
-    if (*count > 0) {
-      return Error{ErrorCode::malformed_input,
-                   "raw: more than the " + std::to_string(bytes) + " bytes that dims and dtype make"};
-    }
-    return body.check();
-  };
   std::vector<GridCandidate> candidates;
-  NoProgress unwatched;
-  return added_reply(services.volumes.add(file, options, unwatched, candidates), candidates);
+  return added_reply(import_arriving(services, body, bytes, std::move(options), candidates), candidates);
 }
 
-Reply import_later(Services services, std::shared_ptr<const StagedFile> file, UploadOptions options) {
-  const auto begun = imports_of(services).begin(std::move(file), std::move(options), kImportMemoryBytes);
+Reply added_later(const Services& services, std::shared_ptr<const StagedFile> file, UploadOptions options) {
+  const auto begun = import_later(services, std::move(file), std::move(options));
   if (!begun) return error_reply(begun.error());
   Reply reply = json_reply(202, *begun);
   reply.headers.emplace_back("Location", "/v1/volumes/" + begun->at("id").get<std::string>());
@@ -79,24 +59,21 @@ Reply upload(Services services, const Request& request, BodyReader& body) {
   const auto memory = memory_to_import(services);
   if (!memory) return error_reply(memory.error());
   const bool is_async = preference(request).respond_async;
-  const auto bytes = arriving_bytes(request, options->import);
-  if (bytes && !is_async) return import_arriving(services, request, body, *bytes, *std::move(options));
+  const auto bytes = arriving(request, options->import);
+  if (bytes && !is_async) return added_while_arriving(services, request, body, *bytes, *std::move(options));
 
   auto received = receive_file(request, body, services.store);
   if (!received) return error_reply(received.error());
   if (auto added = add_form_options(received->fields, *options); !added) return error_reply(added.error());
   if (options->name.empty()) options->name = received->name;
-  if (is_async) return import_later(services, std::move(received->file), *std::move(options));
-  const auto file = open_file(received->file->path());
-  if (!file) return error_reply(file.error());
+  if (is_async) return added_later(services, std::move(received->file), *std::move(options));
   std::vector<GridCandidate> candidates;
-  NoProgress unwatched;
-  return added_reply(services.volumes.add(**file, *options, unwatched, candidates), candidates);
+  return added_reply(import_spooled(services, *received->file, *options, candidates), candidates);
 }
 
 Reply list(Services services, const Request& request) {
   if (auto known = only_parameters(request, {"page_size", "page_token"}); !known) return error_reply(known.error());
-  const auto page_size = whole_parameter(request, "page_size", 100, 1, kLargestPage);
+  const auto page_size = whole_parameter(request, "page_size", kDefaultPage, 1, kLargestPage);
   if (!page_size) return error_reply(page_size.error());
   const auto page =
       services.volumes.list(static_cast<std::size_t>(*page_size), parameter(request, "page_token").value_or(""));
@@ -104,10 +81,7 @@ Reply list(Services services, const Request& request) {
 }
 
 Reply get(Services services, const Request& request) {
-  auto document = services.volumes.document(request.captures[0]);
-  if (!document && document.error().code == ErrorCode::not_found) {
-    document = imports_of(services).document(request.captures[0]);
-  }
+  const auto document = show_volume(services, request.captures[0]);
   return document ? json_reply(200, *document) : error_reply(document.error());
 }
 
@@ -119,38 +93,20 @@ Reply change(Services services, const Request& request) {
   return document ? json_reply(200, *document) : error_reply(document.error());
 }
 
-Reply no_content() {
+Reply remove(Services services, const Request& request) {
+  if (auto removed = remove_volume(services, request.captures[0]); !removed) return error_reply(removed.error());
   Reply reply;
   reply.status = 204;
   return reply;
 }
 
-Reply remove(Services services, const Request& request) {
-  const std::string& id = request.captures[0];
-  const auto known = services.volumes.document(id);
-  if (!known && known.error().code == ErrorCode::not_found) {
-    const auto removed = imports_of(services).remove(id);
-    return removed ? no_content() : error_reply(removed.error());
-  }
-  // A damaged one cannot be shown but can be removed.
-  if (!known && known.error().code != ErrorCode::internal) return error_reply(known.error());
-  if (auto purged = services.extractions.purge_results_of(id); !purged) return error_reply(purged.error());
-  if (auto removed = services.volumes.remove(id); !removed) return error_reply(removed.error());
-  return no_content();
-}
-
 Reply histogram(Services services, const Request& request) {
   if (auto known = only_parameters(request, {"bins"}); !known) return error_reply(known.error());
-  const auto bins = whole_parameter(request, "bins", 256, 1, kMaxHistogramBins);
+  const auto bins = whole_parameter(request, "bins", kDefaultHistogramBins, 1, kMaxHistogramBins);
   if (!bins) return error_reply(bins.error());
   const auto counted = std::make_shared<Histogram>();
-  const auto count = [=, id = request.captures[0], bins = static_cast<int>(*bins)](Job& job) -> Result<void> {
-    auto result = services.volumes.histogram(id, bins, job);
-    if (!result) return std::move(result).error();
-    *counted = *std::move(result);
-    return {};
-  };
-  return after_job(services.queue.submit(Priority::interactive, count), WhenAbandoned::cancel, [counted] {
+  auto job = begin_histogram(services, request.captures[0], static_cast<int>(*bins), counted);
+  return after_job(std::move(job), WhenAbandoned::cancel, [counted] {
     return json_reply(200, {{"edges", counted->edges}, {"counts", counted->counts}, {"missing", counted->missing}});
   });
 }

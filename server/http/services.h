@@ -2,35 +2,18 @@
 
 #include <functional>
 
-#include "engine/pipeline/estimate.h"
-#include "server/app/extractions.h"
-#include "server/app/volumes.h"
+#include "server/app/services.h"
 #include "server/http/exchange.h"
 #include "server/http/reply_cache.h"
-#include "server/jobs/job_queue.h"
-#include "server/jobs/memory_budget.h"
-#include "server/store/blob_store.h"
 
 namespace geosis::server::http {
 
-/// The use cases that the routes open to HTTP. Outlives the front.
-struct Services {
-  BlobStore& store;
-  Volumes& volumes;
-  Extractions& extractions;
-  JobQueue& queue;
-  MemoryBudget& memory;
+/// The use cases that the routes open to HTTP, and the answers that it keeps. Outlives the front.
+struct Services : server::Services {
   ReplyCache& kept;
 };
 
 /// The services of the tenant that a request comes from.
 using ServicesOf = std::function<Services(const Request&)>;
-
-/// Memory for one import. errors: unavailable: others have taken it.
-inline Result<MemoryBudget::Reservation> memory_to_import(const Services& services) {
-  auto reserved = services.memory.reserve(kImportMemoryBytes);
-  if (!reserved) return Error{ErrorCode::unavailable, "the server's memory is taken by what runs already"};
-  return *std::move(reserved);
-}
 
 }  // namespace geosis::server::http

@@ -8,7 +8,7 @@
 #include "server/http/chunk_decoder.h"
 #include "server/http/exchange.h"
 #include "server/http/limits.h"
-#include "server/http/rate_guard.h"
+#include "server/net/rate_guard.h"
 
 namespace geosis::server::http {
 

@@ -6,22 +6,6 @@
 #include "server/http/error_reply.h"
 
 namespace geosis::server::http {
-namespace {
-
-/// A JSON value as the text that set_import_option takes: arrays as comma-separated elements.
-std::string option_text(const Json& value) {
-  if (value.is_string()) return value.get<std::string>();
-  if (!value.is_array()) return value.dump();
-  std::string text;
-  for (const Json& element : value) {
-    if (!text.empty()) text += ',';
-    text += element.dump();
-  }
-  return text;
-}
-
-}  // namespace
-
 Result<UploadOptions> upload_options(const std::multimap<std::string, std::string>& query,
                                      std::initializer_list<std::string_view> others) {
   UploadOptions options;
@@ -42,10 +26,7 @@ Result<void> add_form_options(const std::map<std::string, std::string>& fields, 
     const auto document = parse_json(text);
     if (!document || !document->is_object())
       return Error{ErrorCode::invalid_argument, "form field options: expected a JSON object"};
-    for (const auto& [option, value] : document->items()) {
-      if (value.is_null()) continue;
-      if (auto set = set_import_option(options.import, option, option_text(value)); !set) return set;
-    }
+    if (auto set = set_import_options(options.import, *document); !set) return set;
   }
   return {};
 }

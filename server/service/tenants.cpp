@@ -14,7 +14,7 @@ Tenants::Tenants(BlobStore& store, JobQueue& queue, MemoryBudget& memory, http::
 
 http::Services Tenants::services(const std::string& name) const {
   const Tenant& tenant = tenants_.at(name);
-  return {store_, *tenant.volumes, *tenant.extractions, queue_, memory_, kept_};
+  return {{store_, *tenant.volumes, *tenant.extractions, queue_, memory_}, kept_};
 }
 
 void Tenants::on_events(const ExtractionEvents& events) {

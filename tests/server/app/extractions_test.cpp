@@ -163,7 +163,7 @@ TEST_F(ExtractionsTest, ReaderWhoLeavesEndsOnlyWhatHeReads) {
   ASSERT_TRUE(service.extractions.withdraw((*first)->identity().id));
   const auto second = service.extractions.create(volume, ball_request(), Priority::interactive);
   ASSERT_TRUE(second);
-  Extractions::abandon(**first);  // the stream of the one that was stopped breaks only now
+  (*first)->abandon();  // the stream of the one that was stopped breaks only now
   gate.open();
   (*second)->wait_for(30s);
   EXPECT_EQ((*second)->snapshot().state, JobState::done);

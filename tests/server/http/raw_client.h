@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "server/http/descriptor.h"
+#include "server/net/descriptor.h"
 
 namespace geosis::server::http {
 

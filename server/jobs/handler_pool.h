@@ -10,7 +10,7 @@
 #include <thread>
 #include <vector>
 
-namespace geosis::server::http {
+namespace geosis::server {
 
 /// A fixed number of threads that run handlers, fed by two bounded queues: what writes to the store's disk takes long
 /// and never keeps what reads from being answered.
@@ -49,4 +49,4 @@ class HandlerPool {
   std::vector<std::thread> threads_;
 };
 
-}  // namespace geosis::server::http
+}  // namespace geosis::server

@@ -1,4 +1,4 @@
-#include "server/http/handler_pool.h"
+#include "server/jobs/handler_pool.h"
 
 #include <atomic>
 #include <chrono>
@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace geosis::server::http {
+namespace geosis::server {
 namespace {
 
 using Lane = HandlerPool::Lane;
@@ -78,4 +78,4 @@ TEST(HandlerPool, RefusesBeyondALanesQueueAndTakesWhatResumes) {
 }
 
 }  // namespace
-}  // namespace geosis::server::http
+}  // namespace geosis::server

@@ -4,7 +4,7 @@
 
 #include <unistd.h>
 
-namespace geosis::server::http {
+namespace geosis::server {
 
 /// Owner of a file descriptor.
 class Descriptor {
@@ -28,4 +28,4 @@ class Descriptor {
   int number_ = -1;
 };
 
-}  // namespace geosis::server::http
+}  // namespace geosis::server

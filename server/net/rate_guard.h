@@ -3,7 +3,7 @@
 #include <chrono>
 #include <cstdint>
 
-namespace geosis::server::http {
+namespace geosis::server {
 
 /// Judges a peer's rate, window by window; only time spent waiting for the peer counts.
 class RateGuard {
@@ -31,4 +31,4 @@ class RateGuard {
   std::chrono::steady_clock::duration waited_{};
 };
 
-}  // namespace geosis::server::http
+}  // namespace geosis::server

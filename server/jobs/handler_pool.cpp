@@ -1,10 +1,10 @@
-#include "server/http/handler_pool.h"
+#include "server/jobs/handler_pool.h"
 
 #include <cstdint>
 #include <system_error>
 #include <utility>
 
-namespace geosis::server::http {
+namespace geosis::server {
 
 HandlerPool::HandlerPool(std::size_t threads, std::size_t most_queued)
     : most_queued_(most_queued), least_writers_(threads / 4), most_writers_(threads - threads / 4) {
@@ -69,4 +69,4 @@ void HandlerPool::run() {
   }
 }
 
-}  // namespace geosis::server::http
+}  // namespace geosis::server

@@ -1,13 +1,12 @@
-#include "server/http/request_ids.h"
+#include "server/net/request_ids.h"
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <charconv>
 #include <random>
-#include <string_view>
 
-namespace geosis::server::http {
+namespace geosis::server {
 namespace {
 
 constexpr std::size_t kLongestId = 128;
@@ -36,19 +35,17 @@ bool is_trace_field(std::string_view text, std::size_t digits) {
 
 }  // namespace
 
-std::string request_id_of(const Request& request) {
-  const std::string* const stated = request.header("x-request-id");
+std::string request_id_of(std::string_view stated) {
   const auto is_sane = [](char c) { return is_digit(c) || is_letter(c) || c == '.' || c == '_' || c == '-'; };
-  const bool is_usable = stated != nullptr && !stated->empty() && stated->size() <= kLongestId &&
-                         std::all_of(stated->begin(), stated->end(), is_sane);
-  return is_usable ? *stated : new_request_id();
+  const bool is_usable =
+      !stated.empty() && stated.size() <= kLongestId && std::all_of(stated.begin(), stated.end(), is_sane);
+  return is_usable ? std::string(stated) : new_request_id();
 }
 
-std::string trace_id_of(const Request& request) {
-  const std::string* const header = request.header("traceparent");
+std::string trace_id_of(std::string_view traceparent) {
   // version-trace-parent-flags: 00-<32>-<16>-<2>; later versions may append fields.
-  if (header == nullptr || header->size() < 55) return {};
-  const std::string_view text(*header);
+  const std::string_view text = traceparent;
+  if (text.size() < 55) return {};
   const std::string_view version = text.substr(0, 2);
   const bool has_dashes = text[2] == '-' && text[35] == '-' && text[52] == '-';
   const bool is_known = version == "00" ? text.size() == 55 : is_trace_field(version, 2) && version != "ff";
@@ -57,4 +54,4 @@ std::string trace_id_of(const Request& request) {
   return is_trace_field(trace, 32) ? std::string(trace) : std::string();
 }
 
-}  // namespace geosis::server::http
+}  // namespace geosis::server

@@ -4,9 +4,9 @@
 #include <string>
 
 #include "engine/base/result.h"
-#include "server/http/descriptor.h"
+#include "server/net/descriptor.h"
 
-namespace geosis::server::http {
+namespace geosis::server {
 
 /// A listening TCP socket that outlives every failure of accept().
 class Listener {
@@ -42,4 +42,4 @@ class Listener {
   std::uint16_t port_ = 0;
 };
 
-}  // namespace geosis::server::http
+}  // namespace geosis::server

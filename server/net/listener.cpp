@@ -1,4 +1,4 @@
-#include "server/http/listener.h"
+#include "server/net/listener.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -15,7 +15,7 @@
 #include <netinet/tcp.h>
 #include <sys/socket.h>
 
-namespace geosis::server::http {
+namespace geosis::server {
 namespace {
 
 constexpr int kBacklog = 1024;
@@ -140,4 +140,4 @@ void Listener::shed_one() {
   reserve_ = open_null();
 }
 
-}  // namespace geosis::server::http
+}  // namespace geosis::server

@@ -39,7 +39,7 @@ def free_port():
 def geosis(binary, folder):
     """(url of the level, pids)"""
     subprocess.run([binary, "synth", folder / "survey.sgy", "--dims", DIMS], check=True, stdout=subprocess.DEVNULL)
-    process = subprocess.Popen([binary, "serve", "--listen", "127.0.0.1:0", "--store", folder / "store"],
+    process = subprocess.Popen([binary, "serve", "--listen", "127.0.0.1:0", "--grpc", "off", "--store", folder / "store"],
                                stdout=subprocess.PIPE, text=True)
     try:
         url = process.stdout.readline().split()[-1]

@@ -1,3 +1,4 @@
+#include <span>
 #include <string>
 #include <utility>
 
@@ -98,6 +99,19 @@ Result<LevelFile> Extractions::part(const std::string& id, int level, int part) 
   if (bytes) return bytes_file(*std::move(bytes));
   if (bytes.error().code != ErrorCode::not_found) return std::move(bytes).error();
   return Error{ErrorCode::unavailable, "extraction " + id + ": its parts were removed; it is computed again"};
+}
+
+Result<std::string> read_whole(LevelFile& file) {
+  std::string bytes(file.bytes, '\0');
+  std::size_t count = 0;
+  while (count < bytes.size()) {
+    const auto pulled = file.stream->pull(std::as_writable_bytes(std::span(bytes).subspan(count)));
+    if (!pulled) return pulled.error();
+    if (pulled->state != ByteStream::Pulled::State::data) break;
+    count += pulled->count;
+  }
+  if (count == bytes.size() && sha256_hex(std::as_bytes(std::span(bytes))) == file.sha256) return bytes;
+  return Error{ErrorCode::internal, "a stored file is damaged"};
 }
 
 std::optional<LevelFormat> level_format_of(std::string_view extension) {

@@ -38,6 +38,9 @@ struct LevelFile {
   std::string transform;  ///< 16 numbers, for drc
 };
 
+/// Its bytes in memory. errors: those of the stream; internal: they are not what the digest says.
+Result<std::string> read_whole(LevelFile& file);
+
 /// Who wants to know what happens; both may be empty. Called from any thread; must not throw.
 struct ExtractionEvents {
   std::function<void(bool is_hit)> asked = {};  ///< create(): a hit was there already, or under way

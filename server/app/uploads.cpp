@@ -22,9 +22,10 @@ std::optional<std::uint64_t> arriving_bytes(const ImportOptions& options, std::o
 }
 
 Result<UploadResult> import_arriving(const Services& services, CheckedBody& body, std::uint64_t bytes,
-                                     UploadOptions options, std::vector<GridCandidate>& candidates) {
+                                     UploadOptions options, Progress& progress,
+                                     std::vector<GridCandidate>& candidates) {
   const ArrivingFile file(bytes, [&](std::span<std::byte> into) { return body.read(into); });
-  options.confirm = [&]() -> Result<void> {
+  options.confirm = [&, also = std::move(options.confirm)]() -> Result<void> {
     std::byte more{};
     const auto count = body.read(std::span(&more, 1));
     if (!count) return count.error();
@@ -32,10 +33,10 @@ Result<UploadResult> import_arriving(const Services& services, CheckedBody& body
       return Error{ErrorCode::malformed_input,
                    "raw: more than the " + std::to_string(bytes) + " bytes that dims and dtype make"};
     }
-    return body.check();
+    if (auto same = body.check(); !same || !also) return same;
+    return also();
   };
-  NoProgress unwatched;
-  return services.volumes.add(file, options, unwatched, candidates);
+  return services.volumes.add(file, options, progress, candidates);
 }
 
 Result<std::unique_ptr<StagedFile>> spool_body(const Services& services, CheckedBody& body,
@@ -54,11 +55,10 @@ Result<std::unique_ptr<StagedFile>> spool_body(const Services& services, Checked
 }
 
 Result<UploadResult> import_spooled(const Services& services, const StagedFile& file, const UploadOptions& options,
-                                    std::vector<GridCandidate>& candidates) {
+                                    Progress& progress, std::vector<GridCandidate>& candidates) {
   const auto source = open_file(file.path());
   if (!source) return source.error();
-  NoProgress unwatched;
-  return services.volumes.add(**source, options, unwatched, candidates);
+  return services.volumes.add(**source, options, progress, candidates);
 }
 
 Result<Json> import_later(const Services& services, std::shared_ptr<const StagedFile> file, UploadOptions options) {
@@ -68,11 +68,10 @@ Result<Json> import_later(const Services& services, std::shared_ptr<const Staged
 
 Result<std::shared_ptr<Extraction>> extract_spooled(const Services& services, const StagedFile& file,
                                                     const UploadOptions& options, const Json& request,
-                                                    std::vector<GridCandidate>& candidates) {
+                                                    Progress& progress, std::vector<GridCandidate>& candidates) {
   const auto source = open_file(file.path());
   if (!source) return source.error();
-  NoProgress unwatched;
-  return services.extractions.create_transient(**source, options, request, unwatched, candidates);
+  return services.extractions.create_transient(**source, options, request, progress, candidates);
 }
 
 }  // namespace geosis::server

@@ -22,7 +22,7 @@ std::optional<std::uint64_t> arriving_bytes(const ImportOptions& options, std::o
 /// candidates   filled as import_volume does.
 /// errors       those of Volumes::add and of the body; malformed_input: it goes on after these bytes.
 Result<UploadResult> import_arriving(const Services& services, CheckedBody& body, std::uint64_t bytes,
-                                     UploadOptions options, std::vector<GridCandidate>& candidates);
+                                     UploadOptions options, Progress& progress, std::vector<GridCandidate>& candidates);
 
 /// A body as a file in the store's staging. errors: those of Spool and of the body.
 Result<std::unique_ptr<StagedFile>> spool_body(const Services& services, CheckedBody& body,
@@ -30,7 +30,7 @@ Result<std::unique_ptr<StagedFile>> spool_body(const Services& services, Checked
 
 /// Imports a file that has arrived. errors: those of Volumes::add.
 Result<UploadResult> import_spooled(const Services& services, const StagedFile& file, const UploadOptions& options,
-                                    std::vector<GridCandidate>& candidates);
+                                    Progress& progress, std::vector<GridCandidate>& candidates);
 
 /// The same after the answer: a document of how it goes. errors: those of Imports::begin.
 Result<Json> import_later(const Services& services, std::shared_ptr<const StagedFile> file, UploadOptions options);
@@ -38,6 +38,6 @@ Result<Json> import_later(const Services& services, std::shared_ptr<const Staged
 /// One shot: the body of a file's range; nothing is kept. errors: those of Extractions::create_transient.
 Result<std::shared_ptr<Extraction>> extract_spooled(const Services& services, const StagedFile& file,
                                                     const UploadOptions& options, const Json& request,
-                                                    std::vector<GridCandidate>& candidates);
+                                                    Progress& progress, std::vector<GridCandidate>& candidates);
 
 }  // namespace geosis::server

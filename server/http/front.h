@@ -10,6 +10,7 @@
 #include "server/http/limits.h"
 #include "server/http/middleware.h"
 #include "server/http/router.h"
+#include "server/jobs/slots.h"
 
 namespace geosis::server::http {
 
@@ -21,6 +22,7 @@ struct FrontOptions {
   std::size_t handler_threads = 8;
   std::size_t queued_requests = 256;  ///< that wait for a handler's thread; more are answered 503
   std::size_t upload_threads = 32;    ///< uploads at one time; more are answered 503
+  Slots* uploads = nullptr;           ///< instead: those that other doors take from as well. Outlives the front.
   Middleware* middleware = nullptr;   ///< outlives the front
 };
 

@@ -33,7 +33,8 @@ FrontLoop::FrontLoop(const FrontOptions& options, Router routes, Listener listen
       poller_(std::move(poller)),
       mailbox_(std::move(mailbox)),
       handlers_(options.handler_threads, options.queued_requests),
-      uploads_(options.upload_threads),
+      own_uploads_(options.upload_threads),
+      uploads_(options.uploads ? *options.uploads : own_uploads_),
       tls_(std::move(tls)),
       port_(listener_.port()),
       next_id_(kFirstConnection) {}

@@ -73,6 +73,7 @@ class FrontLoop final : private ConnectionOwner {
   Poller poller_;
   std::shared_ptr<Mailbox> mailbox_;
   HandlerPool handlers_;
+  Slots own_uploads_;
   UploadThreads uploads_;
   std::unique_ptr<TlsContext> tls_;  ///< null = plain
   std::uint16_t port_;

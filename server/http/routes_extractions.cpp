@@ -131,7 +131,8 @@ Reply extract(Services services, const Request& request, BodyReader& body) {
   if (!received) return error_reply(received.error());
   if (auto added = add_form_options(received->fields, *options); !added) return error_reply(added.error());
   std::vector<GridCandidate> candidates;
-  const auto extraction = extract_spooled(services, *received->file, *options, *wanted, candidates);
+  NoProgress unwatched;
+  const auto extraction = extract_spooled(services, *received->file, *options, *wanted, unwatched, candidates);
   if (!extraction) return upload_refusal(extraction.error(), candidates);
   return level_stream_reply(*extraction, abandonment(*extraction));
 }

@@ -1,11 +1,9 @@
 #include <charconv>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 
-#include "engine/base/digest.h"
 #include "server/app/result_streams.h"
 #include "server/http/error_reply.h"
 #include "server/http/json_reply.h"
@@ -84,21 +82,6 @@ const char* media_type_of(LevelFormat format) {
   return "application/octet-stream";
 }
 
-/// The whole stream in memory, if it is what its digest says.
-Result<std::shared_ptr<const std::string>> read_whole(LevelFile& file) {
-  auto bytes = std::make_shared<std::string>(file.bytes, '\0');
-  std::size_t count = 0;
-  while (count < bytes->size()) {
-    const auto pulled = file.stream->pull(std::as_writable_bytes(std::span(*bytes).subspan(count)));
-    if (!pulled) return pulled.error();
-    if (pulled->state != ByteStream::Pulled::State::data) break;
-    count += pulled->count;
-  }
-  const bool is_whole = count == bytes->size() && sha256_hex(std::as_bytes(std::span(*bytes))) == file.sha256;
-  if (!is_whole) return Error{ErrorCode::internal, "a stored file is damaged"};
-  return std::shared_ptr<const std::string>(std::move(bytes));
-}
-
 std::string name_of(const Request& request) {
   return request.tenant + " " + request.path;
 }
@@ -109,14 +92,15 @@ Reply kept_reply(Services services, const std::string& name, Result<LevelFile> f
     const std::string transform = file ? file->transform : "";
     return file_reply(std::move(file), type, transform);
   }
-  auto body = read_whole(*file);
-  if (!body) return error_reply(body.error());
+  auto bytes = read_whole(*file);
+  if (!bytes) return error_reply(bytes.error());
+  const auto body = std::make_shared<const std::string>(*std::move(bytes));
   const std::string transform = file->transform;
   Reply reply = file_reply(std::move(file), type, transform);
   reply.stream.reset();
   reply.length.reset();
-  reply.shared = *body;
-  services.kept.keep(name, {reply.headers, *std::move(body)});
+  reply.shared = body;
+  services.kept.keep(name, {reply.headers, body});
   return reply;
 }
 

@@ -40,7 +40,8 @@ Reply added_while_arriving(const Services& services, const Request& request, Bod
   if (!stated) return error_reply(stated.error());
   DigestedBody body(wire, *std::move(stated));
   std::vector<GridCandidate> candidates;
-  return added_reply(import_arriving(services, body, bytes, std::move(options), candidates), candidates);
+  NoProgress unwatched;
+  return added_reply(import_arriving(services, body, bytes, std::move(options), unwatched, candidates), candidates);
 }
 
 Reply added_later(const Services& services, std::shared_ptr<const StagedFile> file, UploadOptions options) {
@@ -68,7 +69,8 @@ Reply upload(Services services, const Request& request, BodyReader& body) {
   if (options->name.empty()) options->name = received->name;
   if (is_async) return added_later(services, std::move(received->file), *std::move(options));
   std::vector<GridCandidate> candidates;
-  return added_reply(import_spooled(services, *received->file, *options, candidates), candidates);
+  NoProgress unwatched;
+  return added_reply(import_spooled(services, *received->file, *options, unwatched, candidates), candidates);
 }
 
 Reply list(Services services, const Request& request) {

@@ -6,9 +6,10 @@
 namespace geosis::server::http {
 
 bool UploadThreads::start(std::uint64_t connection, std::function<void()> work) {
-  if (!has_room()) return false;
+  auto slot = slots_.take();
+  if (!slot) return false;
   try {
-    threads_.emplace(connection, std::thread(std::move(work)));
+    threads_.emplace(connection, Running{std::thread(std::move(work)), *std::move(slot)});
   } catch (const std::system_error&) {
     return false;
   }
@@ -18,12 +19,12 @@ bool UploadThreads::start(std::uint64_t connection, std::function<void()> work) 
 void UploadThreads::finished(std::uint64_t connection) {
   const auto thread = threads_.find(connection);
   if (thread == threads_.end()) return;
-  thread->second.join();
+  thread->second.thread.join();
   threads_.erase(thread);
 }
 
 void UploadThreads::join_all() {
-  for (auto& [connection, thread] : threads_) thread.join();
+  for (auto& [connection, running] : threads_) running.thread.join();
   threads_.clear();
 }
 

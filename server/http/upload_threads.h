@@ -1,20 +1,21 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <thread>
 
+#include "server/jobs/slots.h"
+
 namespace geosis::server::http {
 
-/// One thread for each running upload, at most so many. Used by the loop's thread only.
+/// One thread for each running upload, as many as there are slots. Used by the loop's thread only.
 class UploadThreads {
  public:
-  explicit UploadThreads(std::size_t most) : most_(most) {}
+  explicit UploadThreads(Slots& slots) : slots_(slots) {}
   ~UploadThreads() { join_all(); }
 
-  bool has_room() const { return threads_.size() < most_; }
+  bool has_room() const { return slots_.has_room(); }
   /// False when there are enough already, or the system gives no thread. Work must not throw.
   bool start(std::uint64_t connection, std::function<void()> work);
   /// The connection's upload has answered: its thread is about to end.
@@ -22,8 +23,13 @@ class UploadThreads {
   void join_all();
 
  private:
-  std::size_t most_;
-  std::map<std::uint64_t, std::thread> threads_;  ///< by connection
+  struct Running {
+    std::thread thread;
+    Slots::Slot slot;
+  };
+
+  Slots& slots_;
+  std::map<std::uint64_t, Running> threads_;  ///< by connection
 };
 
 }  // namespace geosis::server::http

@@ -42,7 +42,7 @@ std::vector<std::string> Health::not_ready() {
 
 std::optional<std::string> Health::not_alive() {
   const auto silence = queue_.report().longest_silence;
-  if (silence < kLongestSilence) return std::nullopt;
+  if (silence < kLongestSilence) return also_ ? also_() : std::nullopt;
   return "a job has made no progress for " + std::to_string(silence.count() / 1000) + " seconds";
 }
 

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/jobs/job_queue.h"
@@ -18,13 +20,16 @@ class Health {
   /// Why no requests should come here now; empty = they should. Writes an empty file into the store's staging.
   std::vector<std::string> not_ready();
   /// Why this process will not get better by itself: a job that computes but has not asked for minutes whether to go
-  /// on.
+  /// on, or what ask_also() tells of.
   std::optional<std::string> not_alive();
+  /// Something else that may be why. Before the first question.
+  void ask_also(std::function<std::optional<std::string>()> not_alive) { also_ = std::move(not_alive); }
   void set_draining() { is_draining_ = true; }
 
  private:
   BlobStore& store_;
   JobQueue& queue_;
+  std::function<std::optional<std::string>()> also_;
   std::atomic<bool> is_draining_{false};
 };
 

@@ -1,26 +1,17 @@
 #include "server/service/request_gate.h"
 
-#include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "server/app/errors.h"
+#include "server/auth/admission.h"
+#include "server/service/retry_after.h"
+
 namespace geosis::server {
 namespace {
-
-constexpr std::string_view kScheme = "bearer ";
-constexpr double kLeastWait = 1, kLongestWait = 60;  // seconds
-
-/// The key of "Authorization: Bearer KEY"; nothing in any other form.
-std::optional<std::string_view> key_of(const http::Request& request) {
-  const std::string* const header = request.header("authorization");
-  if (header == nullptr || header->size() <= kScheme.size()) return std::nullopt;
-  if (http::lower_case(std::string_view(*header).substr(0, kScheme.size())) != kScheme) return std::nullopt;
-  return http::trimmed(std::string_view(*header).substr(kScheme.size()));
-}
 
 bool is_open(const http::Request& request) {
   return !request.route.starts_with("/v1/");
@@ -43,20 +34,16 @@ RequestGate::RequestGate(std::optional<ApiKeys> keys, const JobQueue& queue, Log
     : keys_(std::move(keys)), queue_(queue), log_(log), metrics_(metrics) {}
 
 int RequestGate::retry_after_seconds() const {
-  return static_cast<int>(std::clamp(std::ceil(queue_.expected_wait().count()), kLeastWait, kLongestWait));
+  return retry_after(queue_);
 }
 
 std::optional<http::Refusal> RequestGate::admit(http::Request& request) {
   if (!keys_ || is_open(request)) return std::nullopt;
-  const auto key = key_of(request);
-  if (!key) return http::Refusal{401, "this needs a key: Authorization: Bearer KEY"};
-  const Caller* const caller = keys_->find(*key);
-  if (caller == nullptr) return http::Refusal{401, "nobody knows this key"};
-  request.tenant = caller->tenant;
-  const bool may = is_read(request) ? caller->scopes.read : caller->scopes.write;
-  if (may) return std::nullopt;
-  return http::Refusal{403,
-                       std::string("this needs the scope ") + (is_read(request) ? "volumes:read" : "volumes:write")};
+  const std::string* const authorization = request.header("authorization");
+  auto caller = admit_caller(keys_, authorization ? std::string_view(*authorization) : "", !is_read(request));
+  if (!caller) return http::Refusal{numbers_of(caller.error().code).http_status, caller.error().message};
+  request.tenant = std::move(caller->tenant);
+  return std::nullopt;
 }
 
 void RequestGate::answered(const http::Answered& answered) {

@@ -14,10 +14,14 @@ namespace geosis::server {
 /// Where metrics are. Another server of this machine may have it: then this one goes without, and says so.
 inline constexpr const char* kDefaultAdmin = "127.0.0.1:9464";
 
+/// Where the gRPC door is.
+inline constexpr const char* kDefaultGrpc = "127.0.0.1:8081";
+
 /// How a server is set up: flags, environment and configuration file end up here.
 struct ServeOptions {
   std::string listen = "127.0.0.1:8080";
-  std::string tls_certificate, tls_key;  ///< files in PEM; empty = plain HTTP
+  std::string tls_certificate, tls_key;  ///< files in PEM, for both doors; empty = plain
+  std::string grpc = kDefaultGrpc;       ///< empty = no gRPC
   std::filesystem::path store = "geosis-store";
   std::uint64_t store_limit = 0;      ///< bytes that everything kept may take; 0 = as the disk allows
   std::filesystem::path page;         ///< folder of the built page
@@ -41,7 +45,8 @@ struct ServeOptions {
 };
 
 /// Serves until SIGTERM or SIGINT, then lets running answers finish for `drain`, and stops; a second signal ends the
-/// process at once, with status 1. Prints "listening on http://HOST:PORT" on stdout when it is ready.
+/// process at once, with status 1. Prints "listening on http://HOST:PORT" on stdout when it is ready, and below it
+/// "listening on grpc://HOST:PORT".
 ///
 /// errors   invalid_argument: an address that is not loopback without auth; those of store and front.
 Result<void> serve(const ServeOptions& options);

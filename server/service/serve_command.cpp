@@ -13,7 +13,7 @@ namespace {
 
 struct ServeArguments {
   ServeOptions options;
-  std::string store = "geosis-store", page = GEOSIS_PAGE_FOLDER;
+  std::string store = "geosis-store", page = GEOSIS_PAGE_FOLDER, grpc = kDefaultGrpc;
   int job_seconds = 3600;
   int drain_seconds = 25, patience_seconds = 10, idle_seconds = 60;
 };
@@ -36,7 +36,8 @@ void add_log_flags(CLI::App& command, ServeOptions& options) {
 }  // namespace
 
 Command add_serve_command(CLI::App& app) {
-  auto& command = *app.add_subcommand("serve", "Serve volumes and extractions over HTTP, and the page that shows them");
+  auto& command =
+      *app.add_subcommand("serve", "Serve volumes and extractions over HTTP and gRPC, and the page that shows them");
   auto arguments = std::make_shared<ServeArguments>();
   ServeOptions& options = arguments->options;
   options.threads = share_of_threads(default_threads());
@@ -44,7 +45,8 @@ Command add_serve_command(CLI::App& app) {
     return command.add_option(name, value, help)->capture_default_str();
   };
   flag("--listen", options.listen, "HOST:PORT; port 0 = any that is free")->type_name("ADDRESS");
-  auto* certificate = flag("--tls-cert", options.tls_certificate, "certificate chain; with it the door speaks TLS");
+  flag("--grpc", arguments->grpc, "HOST:PORT of the gRPC door; off = none")->type_name("ADDRESS");
+  auto* certificate = flag("--tls-cert", options.tls_certificate, "certificate chain; with it the doors speak TLS");
   auto* key = flag("--tls-key", options.tls_key, "the certificate's key");
   certificate->type_name("PEM")->needs(key);
   key->type_name("PEM")->needs(certificate);
@@ -81,6 +83,7 @@ Command add_serve_command(CLI::App& app) {
   return [arguments]() -> Result<void> {
     arguments->options.store = arguments->store;
     arguments->options.page = arguments->page;
+    arguments->options.grpc = arguments->grpc == "off" ? "" : arguments->grpc;
     arguments->options.patience = std::chrono::seconds(arguments->patience_seconds);
     arguments->options.idle = std::chrono::seconds(arguments->idle_seconds);
     arguments->options.longest = std::chrono::seconds(arguments->job_seconds);

@@ -2,9 +2,9 @@
 
 namespace geosis::server {
 
-Tenants::Tenants(BlobStore& store, JobQueue& queue, MemoryBudget& memory, http::ReplyCache& kept, int threads,
+Tenants::Tenants(BlobStore& store, JobQueue& queue, MemoryBudget& memory, int threads,
                  const std::vector<std::string>& names)
-    : store_(store), queue_(queue), memory_(memory), kept_(kept) {
+    : store_(store), queue_(queue), memory_(memory) {
   for (const std::string& name : names) {
     Tenant& tenant = tenants_[name];
     tenant.volumes = std::make_unique<Volumes>(store, name, threads);
@@ -12,9 +12,9 @@ Tenants::Tenants(BlobStore& store, JobQueue& queue, MemoryBudget& memory, http::
   }
 }
 
-http::Services Tenants::services(const std::string& name) const {
+Services Tenants::services(const std::string& name) const {
   const Tenant& tenant = tenants_.at(name);
-  return {{store_, *tenant.volumes, *tenant.extractions, queue_, memory_}, kept_};
+  return {store_, *tenant.volumes, *tenant.extractions, queue_, memory_};
 }
 
 void Tenants::on_events(const ExtractionEvents& events) {

@@ -7,19 +7,18 @@
 
 #include "server/app/extractions.h"
 #include "server/app/housekeeping.h"
+#include "server/app/services.h"
 #include "server/app/volumes.h"
-#include "server/http/services.h"
 
 namespace geosis::server {
 
 /// The use cases of each tenant, on one store and one queue. The queue must have stopped before this goes.
 class Tenants {
  public:
-  Tenants(BlobStore& store, JobQueue& queue, MemoryBudget& memory, http::ReplyCache& kept, int threads,
-          const std::vector<std::string>& names);
+  Tenants(BlobStore& store, JobQueue& queue, MemoryBudget& memory, int threads, const std::vector<std::string>& names);
 
   /// name   one of those given.
-  http::Services services(const std::string& name) const;
+  Services services(const std::string& name) const;
   /// Tells of every extraction, whoever's it is. Set before the first request.
   void on_events(const ExtractionEvents& events);
   /// Removes what killed processes left, now and every hour.
@@ -35,7 +34,6 @@ class Tenants {
   BlobStore& store_;
   JobQueue& queue_;
   MemoryBudget& memory_;
-  http::ReplyCache& kept_;
   std::map<std::string, Tenant> tenants_;
 };
 

@@ -42,9 +42,10 @@ class Server:
         self.log = Path(folder) / "log"
         self._errors = open(self.log, "w")
         self.process = subprocess.Popen(
-            [GEOSIS, "serve", "--listen", "127.0.0.1:0", "--admin", self.admin, "--store", str(Path(folder) / "store"), *flags],
+            [GEOSIS, "serve", "--listen", "127.0.0.1:0", "--grpc", "127.0.0.1:0", "--admin", self.admin, "--store", str(Path(folder) / "store"), *flags],
             stdout=subprocess.PIPE, stderr=self._errors, text=True, env={**os.environ, **environment})
-        self.address = urllib.parse.urlsplit(self.process.stdout.readline().split()[-1]).netloc
+        self.address, self.grpc_address = (
+            urllib.parse.urlsplit(self.process.stdout.readline().split()[-1]).netloc for _ in range(2))
 
     def __enter__(self):
         return self
@@ -140,7 +141,7 @@ class Keys(unittest.TestCase):
 class Exposure(unittest.TestCase):
     def test_what_others_reach_must_be_said_to_be_open(self):
         with tempfile.TemporaryDirectory() as folder:
-            for flags in (["--listen", "0.0.0.0:0"], ["--listen", "127.0.0.1:0", "--admin", "0.0.0.0:0"],
+            for flags in (["--listen", "0.0.0.0:0"], ["--listen", "127.0.0.1:0", "--grpc", "0.0.0.0:0"], ["--listen", "127.0.0.1:0", "--admin", "0.0.0.0:0"],
                           ["--listen", "[::]:0"], ["--auth", "secret"], ["--auth", "api_keys"],
                           ["--auth", "api_keys", f"{folder}/absent"]):
                 started = run("serve", "--store", f"{folder}/store", *flags)
@@ -149,7 +150,7 @@ class Exposure(unittest.TestCase):
 
     def test_too_little_memory_is_said_at_the_start(self):
         with tempfile.TemporaryDirectory() as folder:
-            started = run("serve", "--store", folder, "--listen", "127.0.0.1:0", "--memory", "1000")
+            started = run("serve", "--store", folder, "--listen", "127.0.0.1:0", "--grpc", "off", "--memory", "1000")
             self.assertIn("--memory 1000", started.stderr)
 
 

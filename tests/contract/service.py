@@ -33,7 +33,9 @@ class Service:
 
     def __init__(self, store, *flags, **popen):
         self._popen = popen
+        self._has_grpc = "--grpc" in flags
         self._command = [GEOSIS, "serve", "--listen", "127.0.0.1:0", "--store", str(store), *flags]
+        self._command += [] if self._has_grpc else ["--grpc", "off"]
 
     def __enter__(self):
         self.process = subprocess.Popen(self._command, stdout=subprocess.PIPE, text=True, **self._popen)
@@ -42,6 +44,8 @@ class Service:
             self.process.kill()
             raise RuntimeError(f"the server did not start: {line!r}")
         self.address = urllib.parse.urlsplit(line.split()[-1]).netloc
+        if self._has_grpc:
+            self.grpc_address = urllib.parse.urlsplit(self.process.stdout.readline().split()[-1]).netloc
         return self
 
     def __exit__(self, *_):

@@ -27,7 +27,7 @@ class Lost(Exception):
 
 class Server:
     def __init__(self, store):
-        self._command = [GEOSIS, "serve", "--listen", "127.0.0.1:0", "--store", store, "--threads", "1"]
+        self._command = [GEOSIS, "serve", "--listen", "127.0.0.1:0", "--grpc", "off", "--store", store, "--threads", "1"]
         self.start()
 
     def start(self):

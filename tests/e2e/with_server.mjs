@@ -16,7 +16,7 @@ const folder = mkdtempSync(join(tmpdir(), 'geosis-e2e-'));
 
 async function startServer() {
   const flags = ['--listen', '127.0.0.1:0', '--store', join(folder, 'store'), '--page', PAGE];
-  const server = spawn(GEOSIS, ['serve', ...flags], { stdio: ['ignore', 'pipe', 'inherit'] });
+  const server = spawn(GEOSIS, ['serve', '--grpc', 'off', ...flags], { stdio: ['ignore', 'pipe', 'inherit'] });
   server.on('exit', (code, signal) => code === 0 || console.error(`the server ended: ${signal ?? `status ${code}`}`));
   const lines = createInterface({ input: server.stdout });
   const [line] = await Promise.race([once(lines, 'line'), once(server, 'exit')]);

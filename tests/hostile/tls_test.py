@@ -138,7 +138,7 @@ class Tls(unittest.TestCase):
     def test_another_certificates_key_is_refused(self):
         _, other = make_certificate("other")
         for certificate, key in ((CERTIFICATE, other), (FOLDER / "absent.pem", KEY), (KEY, KEY)):
-            said = subprocess.run([SERVICE.process.args[0], "serve", "--listen", "127.0.0.1:0", "--store", FOLDER / "store",
+            said = subprocess.run([SERVICE.process.args[0], "serve", "--listen", "127.0.0.1:0", "--grpc", "off", "--store", FOLDER / "store",
                                    "--tls-cert", certificate, "--tls-key", key], capture_output=True, text=True, timeout=20)
             self.assertNotEqual(said.returncode, 0)
             self.assertIn("TLS", said.stderr)

@@ -49,7 +49,7 @@ BASES = [volume(SIDE, seed) for seed in range(4)]
 class Server:
     def __init__(self, store):
         self.process = subprocess.Popen(
-            [GEOSIS, "serve", "--listen", "127.0.0.1:0", "--store", store, "--queued", "64", "--admin", "", "--log-level", "warning"],
+            [GEOSIS, "serve", "--listen", "127.0.0.1:0", "--grpc", "off", "--store", store, "--queued", "64", "--admin", "", "--log-level", "warning"],
             stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
         self.address = urllib.parse.urlsplit(self.process.stdout.readline().split()[-1]).netloc
 

@@ -1,6 +1,8 @@
 #include "server/app/errors.h"
 
+#include <fstream>
 #include <map>
+#include <regex>
 #include <set>
 #include <string>
 #include <utility>
@@ -27,6 +29,32 @@ TEST(NumbersOf, EachCodeHasTheNumbersOfTheContract) {
     ASSERT_TRUE(expected.contains(name_of(code))) << name_of(code);
     EXPECT_EQ(std::pair(numbers.http_status, numbers.grpc_status), expected.at(name_of(code))) << name_of(code);
   }
+}
+
+/// Of google.rpc.Code, by number.
+const char* grpc_name(int number) {
+  static constexpr const char* kNames[] = {
+      "OK",        "CANCELLED",      "UNKNOWN",           "INVALID_ARGUMENT",   "DEADLINE_EXCEEDED",
+      "NOT_FOUND", "ALREADY_EXISTS", "PERMISSION_DENIED", "RESOURCE_EXHAUSTED", "FAILED_PRECONDITION",
+      "ABORTED",   "OUT_OF_RANGE",   "UNIMPLEMENTED",     "INTERNAL",           "UNAVAILABLE",
+      "DATA_LOSS", "UNAUTHENTICATED"};
+  return kNames[number];
+}
+
+TEST(NumbersOf, TheContractsTableHasTheSameRows) {
+  std::ifstream file(GEOSIS_CONTRACT_README);
+  ASSERT_TRUE(file.is_open());
+  const std::regex row(R"(\| (\w+) \| (\d{3})[^|]* \| ([A-Z_]+) \|)");
+  std::map<std::string, std::pair<int, std::string>> told, known;
+  std::smatch match;
+  for (std::string line; std::getline(file, line);) {
+    if (std::regex_match(line, match, row)) told[match[1]] = {std::stoi(match[2]), match[3]};
+  }
+  for (int i = 0; i < kCodes; ++i) {
+    const auto& numbers = numbers_of(static_cast<ErrorCode>(i));
+    known[name_of(numbers.code)] = {numbers.http_status, grpc_name(numbers.grpc_status)};
+  }
+  EXPECT_EQ(told, known);
 }
 
 TEST(NumbersOf, TitlesTellTheCodesApart) {

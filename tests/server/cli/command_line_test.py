@@ -323,7 +323,7 @@ class Settings(unittest.TestCase):
 
     def served_at(self, *flags, **variables):
         """The port that the server says it listens on; it is stopped at once."""
-        with subprocess.Popen([GEOSIS, "serve", "--store", self.store, *flags], stdout=subprocess.PIPE, text=True,
+        with subprocess.Popen([GEOSIS, "serve", "--grpc", "off", "--store", self.store, *flags], stdout=subprocess.PIPE, text=True,
                               stderr=subprocess.DEVNULL, env={**os.environ, **variables}) as server:
             line = server.stdout.readline()
             server.terminate()
@@ -362,9 +362,10 @@ class Settings(unittest.TestCase):
 
     def test_addresses_that_make_no_sense_are_refused(self):
         for address in ("127.0.0.1:99999", "127.0.0.1", "127.0.0.1:http", ":8080", "0.0.0.0:0"):
-            refused = geosis("serve", "--store", self.store, "--listen", address)
-            self.assertEqual(refused.returncode, 1, address)
-            self.assertIn("invalid_argument", refused.stderr)
+            for flags in (["--listen", address, "--grpc", "off"], ["--listen", "127.0.0.1:0", "--grpc", address]):
+                refused = geosis("serve", "--store", self.store, *flags)
+                self.assertEqual(refused.returncode, 1, flags)
+                self.assertIn("invalid_argument", refused.stderr)
 
 
 if __name__ == "__main__":

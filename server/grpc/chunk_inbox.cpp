@@ -1,0 +1,113 @@
+#include "server/grpc/chunk_inbox.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <utility>
+
+namespace geosis::server::rpc {
+namespace {
+
+constexpr std::size_t kMostChunks = 2;
+constexpr std::chrono::milliseconds kLook{250};
+
+std::string hex_of(const std::string& bytes) {
+  static constexpr char kDigits[] = "0123456789abcdef";
+  std::string text;
+  for (const unsigned char byte : bytes) {
+    text += kDigits[byte >> 4];
+    text += kDigits[byte & 15];
+  }
+  return text;
+}
+
+}  // namespace
+
+ChunkInbox::ChunkInbox(Options options, std::function<void()> ask_for_more)
+    : options_(std::move(options)),
+      ask_for_more_(std::move(ask_for_more)),
+      rate_(options_.bytes_per_second, options_.window) {}
+
+void ChunkInbox::expect(std::string sha256, std::optional<std::uint64_t> bytes) {
+  const std::lock_guard lock(mutex_);
+  sha256_ = std::move(sha256);
+  stated_bytes_ = bytes;
+}
+
+bool ChunkInbox::put(std::string chunk) {
+  const std::lock_guard lock(mutex_);
+  if (broken_) return false;
+  received_ += chunk.size();
+  if (received_ > options_.most_bytes) {
+    broken_ = Error{ErrorCode::limit_exceeded, "the file is larger than the " + std::to_string(options_.most_bytes) +
+                                                   " bytes that this server takes"};
+  } else if (!chunk.empty()) {
+    chunks_.push_back(std::move(chunk));
+  }
+  changed_.notify_one();
+  if (broken_) return false;
+  is_asking_owed_ = chunks_.size() >= kMostChunks;
+  return !is_asking_owed_;
+}
+
+void ChunkInbox::end() {
+  const std::lock_guard lock(mutex_);
+  has_ended_ = true;
+  if (!broken_ && received_ != stated_bytes_.value_or(received_)) {
+    broken_ = Error{ErrorCode::malformed_input, "file cut short, or too long: " + std::to_string(received_) +
+                                                    " bytes arrived of " + std::to_string(*stated_bytes_)};
+  }
+  changed_.notify_one();
+}
+
+void ChunkInbox::break_off(Error error) {
+  const std::lock_guard lock(mutex_);
+  if (!broken_) broken_ = std::move(error);
+  changed_.notify_one();
+}
+
+Result<std::size_t> ChunkInbox::read(std::span<std::byte> into) {
+  std::unique_lock lock(mutex_);
+  if (auto came = wait(lock); !came) return std::move(came).error();
+  if (chunks_.empty() || into.empty()) return std::size_t{0};
+  const std::size_t count = std::min(into.size(), chunks_.front().size() - begin_);
+  std::memcpy(into.data(), chunks_.front().data() + begin_, count);
+  begin_ += count;
+  bool asks = false;
+  if (begin_ == chunks_.front().size()) {
+    chunks_.pop_front();
+    begin_ = 0;
+    asks = std::exchange(is_asking_owed_, false);
+  }
+  lock.unlock();
+  if (asks) ask_for_more_();
+  rate_.add(count, {});
+  if (!sha256_.empty()) digest_.update(into.first(count));
+  return count;
+}
+
+Result<void> ChunkInbox::wait(std::unique_lock<std::mutex>& lock) {
+  while (!broken_ && chunks_.empty() && !has_ended_) {
+    const auto start = std::chrono::steady_clock::now();
+    changed_.wait_for(lock, kLook);
+    if (rate_.add(0, std::chrono::steady_clock::now() - start)) continue;
+    broken_ = Error{ErrorCode::deadline_exceeded, "the file arrives too slowly"};
+  }
+  if (broken_) return *broken_;
+  return {};
+}
+
+Result<void> ChunkInbox::check() {
+  if (sha256_.empty()) return {};
+  std::array<std::byte, 4096> rest;
+  for (;;) {
+    const auto count = read(rest);
+    if (!count) return count.error();
+    if (*count == 0) break;
+  }
+  const std::string stated = hex_of(sha256_), found = std::move(digest_).hex();
+  if (found == stated) return {};
+  return Error{ErrorCode::invalid_argument, "/sha256: " + stated + "; that of the file is " + found};
+}
+
+}  // namespace geosis::server::rpc

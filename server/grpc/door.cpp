@@ -1,0 +1,221 @@
+#include "server/grpc/door.h"
+
+#include <fstream>
+#include <iterator>
+#include <mutex>
+#include <utility>
+
+#include <grpc/support/log.h>
+#include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/health_check_service_interface.h>
+#include <grpcpp/resource_quota.h>
+#include <grpcpp/server.h>
+#include <grpcpp/server_builder.h>
+
+#include "server/grpc/acceptor.h"
+#include "server/grpc/call.h"
+#include "server/grpc/extraction_service.h"
+#include "server/grpc/self_probe.h"
+#include "server/grpc/volume_service.h"
+
+namespace geosis::server::rpc {
+namespace {
+
+constexpr int kLargestMessage = 4 << 20;  // received: a chunk of a file
+constexpr int kMinute = 60'000;
+constexpr int kLargestMetadata = 16 * 1024;
+constexpr std::size_t kMemory = std::size_t{256} << 20;  // beyond, gRPC reads more slowly
+constexpr int kReflectionThreads = 8;                    // its service is the one that holds a thread for each call
+constexpr std::uint64_t kUploadRate = 16 * 1024;
+
+Result<std::string> read_pem(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  if (!file.is_open() || text.empty()) return Error{ErrorCode::invalid_argument, path + ": cannot be read"};
+  return text;
+}
+
+Result<std::shared_ptr<grpc::ServerCredentials>> credentials(const DoorOptions& options) {
+  if (options.tls_certificate.empty()) return grpc::InsecureServerCredentials();
+  auto certificate = read_pem(options.tls_certificate);
+  if (!certificate) return std::move(certificate).error();
+  auto key = read_pem(options.tls_key);
+  if (!key) return std::move(key).error();
+  grpc::SslServerCredentialsOptions tls;
+  tls.pem_key_cert_pairs.push_back({*std::move(key), *std::move(certificate)});
+  return grpc::SslServerCredentials(tls);
+}
+
+/// A probe's way in: addresses that stand for all of a machine's are asked at loopback.
+std::string probe_target(const std::string& listen, std::uint16_t port) {
+  const std::string host = listen.substr(0, listen.rfind(':'));
+  const std::string way = host == "0.0.0.0" ? "127.0.0.1" : host == "[::]" ? "[::1]" : host;
+  return "dns:///" + way + ":" + std::to_string(port);
+}
+
+std::mutex say_mutex;
+std::function<void(const std::string&)> say_line;  // one for the process, as gRPC's log is
+
+void write_line(gpr_log_func_args* line) {
+  const std::lock_guard lock(say_mutex);
+  if (say_line) say_line(line->message);
+}
+
+void tell_to(std::function<void(const std::string&)> say) {
+  const std::lock_guard lock(say_mutex);
+  say_line = std::move(say);
+  gpr_set_log_function(write_line);
+}
+
+/// What gRPC sets up once for a process.
+void set_up_process() {
+  static const bool is_done = [] {
+    grpc::EnableDefaultHealthCheckService(true);
+    grpc::reflection::InitProtoReflectionServerBuilderPlugin();
+    return true;
+  }();
+  static_cast<void>(is_done);
+}
+
+void set_limits(grpc::ServerBuilder& builder, const DoorOptions& options) {
+  builder.SetMaxReceiveMessageSize(kLargestMessage);
+  builder.SetMaxSendMessageSize(-1);  // a survey's text header or a list of a thousand volumes is as large as it is
+  builder.SetResourceQuota(grpc::ResourceQuota("geosis").Resize(kMemory).SetMaxThreads(kReflectionThreads));
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, options.streams_per_connection);
+  builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE, kLargestMetadata);
+  // A peer that is gone without a word is noticed; one that asks all the time is told to go.
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kMinute);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kMinute / 3);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, kMinute / 6);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_IDLE_MS, 10 * kMinute);
+  // Connections go round behind a balancer; what runs on an old one has an hour, as long as a job may take.
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_MS, 60 * kMinute);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS, 60 * kMinute);
+}
+
+}  // namespace
+
+class Door::Running {
+ public:
+  Running(const DoorOptions& options, const Parts& parts)
+      : pool_(options.handler_threads, options.queued_calls),
+        uploads_(parts.uploads),
+        room_{.services_of = parts.services_of,
+              .gate = parts.gate,
+              .pool = pool_,
+              .uploads = uploads_,
+              .upload_bytes = options.upload_bytes,
+              .upload_bytes_per_second = kUploadRate,
+              .patience = options.patience,
+              .reader_patience = options.reader_patience},
+        volumes_(room_),
+        extractions_(room_) {
+    set_up_process();
+    tell_to(parts.say);
+  }
+  ~Running() { stop(); }
+
+  Result<void> start(const DoorOptions& options) {
+    auto secured = credentials(options);
+    if (!secured) return std::move(secured).error();
+    auto listener = Listener::open(options.listen);
+    if (!listener) return std::move(listener).error();
+    grpc::ServerBuilder builder;
+    set_limits(builder, options);
+    builder.RegisterService(&volumes_);
+    builder.RegisterService(&extractions_);
+    taker_ = builder.experimental().AddExternalConnectionAcceptor(
+        grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD, *std::move(secured));
+    server_ = builder.BuildAndStart();
+    if (!server_ && !options.tls_certificate.empty()) {
+      return Error{ErrorCode::invalid_argument,
+                   "TLS: gRPC does not take " + options.tls_certificate + " and " + options.tls_key};
+    }
+    if (!server_) return Error{ErrorCode::internal, "gRPC did not start"};
+    set_serving(true);
+    acceptor_ = std::make_unique<Acceptor>(
+        *std::move(listener), Acceptor::Limits{options.connections, options.connections_per_peer},
+        [this](Descriptor socket) { take(std::move(socket)); }, [this] { room_.open.end_late_ones(); });
+    const auto may_be_full = [this, most = std::min(options.connections, options.connections_per_peer)] {
+      return acceptor_->connections() >= most;
+    };
+    probe_ = std::make_unique<SelfProbe>(probe_target(options.listen, acceptor_->port()),
+                                         !options.tls_certificate.empty(), options.probe_interval, may_be_full);
+    return {};
+  }
+
+  std::uint16_t port() const { return acceptor_->port(); }
+  std::size_t connections() const { return acceptor_->connections(); }
+  std::size_t calls() const { return room_.open.count(); }
+  std::optional<std::string> not_alive() const { return is_draining_ ? std::nullopt : probe_->problem(); }
+
+  void drain(std::chrono::milliseconds grace) {
+    if (is_draining_.exchange(true)) return;
+    set_serving(false);
+    acceptor_->stop();
+    server_->Shutdown(std::chrono::system_clock::now() + grace);
+  }
+
+  void stop() {
+    probe_.reset();
+    if (server_) drain(std::chrono::milliseconds(0));
+    uploads_.join_all();
+    pool_.stop();
+  }
+
+ private:
+  void set_serving(bool is_serving) {
+    grpc::HealthCheckServiceInterface* const health = server_->GetHealthCheckService();
+    health->SetServingStatus(is_serving);
+    for (const char* service : {"geosis.v1.VolumeService", "geosis.v1.ExtractionService"}) {
+      health->SetServingStatus(service, is_serving);
+    }
+  }
+
+  void take(Descriptor socket) {
+    grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters connection;
+    connection.fd = socket.release();
+    taker_->HandleNewConnection(&connection);
+  }
+
+  HandlerPool pool_;
+  UploadThreads uploads_;
+  CallRoom room_;
+  VolumeServiceDoor volumes_;
+  ExtractionServiceDoor extractions_;
+  std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> taker_;
+  std::unique_ptr<grpc::Server> server_;
+  std::atomic<bool> is_draining_{false};
+  std::unique_ptr<Acceptor> acceptor_;
+  std::unique_ptr<SelfProbe> probe_;
+};
+
+Result<std::unique_ptr<Door>> Door::start(const DoorOptions& options, const Parts& parts) {
+  auto running = std::make_unique<Running>(options, parts);
+  if (auto started = running->start(options); !started) return std::move(started).error();
+  return std::unique_ptr<Door>(new Door(std::move(running)));
+}
+
+Door::Door(std::unique_ptr<Running> running) : running_(std::move(running)) {}
+Door::~Door() = default;
+
+std::uint16_t Door::port() const {
+  return running_->port();
+}
+std::size_t Door::connections() const {
+  return running_->connections();
+}
+std::size_t Door::calls() const {
+  return running_->calls();
+}
+std::optional<std::string> Door::not_alive() const {
+  return running_->not_alive();
+}
+void Door::drain(std::chrono::milliseconds grace) {
+  running_->drain(grace);
+}
+void Door::stop() {
+  running_->stop();
+}
+
+}  // namespace geosis::server::rpc

@@ -1,0 +1,49 @@
+#include "server/grpc/upload_threads.h"
+
+#include <memory>
+#include <system_error>
+#include <utility>
+
+namespace geosis::server::rpc {
+
+bool UploadThreads::start(std::function<void()> work) {
+  auto slot = slots_.take();
+  if (!slot) return false;
+  const std::lock_guard lock(mutex_);
+  join_ended();
+  Running& running = threads_.emplace_back();
+  try {
+    running.thread = std::thread(
+        [this, &running, held = std::make_shared<Slots::Slot>(*std::move(slot)), work = std::move(work)]() mutable {
+          work();
+          work = nullptr;  // what it holds goes before its place is free
+          held.reset();
+          const std::lock_guard ended(mutex_);
+          running.has_ended = true;
+        });
+  } catch (const std::system_error&) {
+    threads_.pop_back();
+    return false;
+  }
+  return true;
+}
+
+/// A thread that has said so is about to return: joining it takes no time.
+void UploadThreads::join_ended() {
+  threads_.remove_if([](Running& running) {
+    if (!running.has_ended) return false;
+    running.thread.join();
+    return true;
+  });
+}
+
+void UploadThreads::join_all() {
+  std::list<Running> all;
+  {
+    const std::lock_guard lock(mutex_);
+    all.splice(all.end(), threads_);  // elements stay where they are
+  }
+  for (Running& running : all) running.thread.join();
+}
+
+}  // namespace geosis::server::rpc

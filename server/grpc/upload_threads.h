@@ -1,0 +1,34 @@
+#pragma once
+
+#include <functional>
+#include <list>
+#include <mutex>
+#include <thread>
+
+#include "server/jobs/slots.h"
+
+namespace geosis::server::rpc {
+
+/// One thread for each running upload, as many as there are slots. Any thread but those may call any member.
+class UploadThreads {
+ public:
+  explicit UploadThreads(Slots& slots) : slots_(slots) {}
+  ~UploadThreads() { join_all(); }
+
+  /// False when there are enough already, or the system gives no thread. Work must not throw.
+  bool start(std::function<void()> work);
+  void join_all();
+
+ private:
+  struct Running {
+    std::thread thread;
+    bool has_ended = false;
+  };
+  void join_ended();
+
+  Slots& slots_;
+  std::mutex mutex_;
+  std::list<Running> threads_;
+};
+
+}  // namespace geosis::server::rpc

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <geosis/v1/volume.grpc.pb.h>
+
+#include "server/grpc/call.h"
+
+namespace geosis::server::rpc {
+
+/// geosis.v1.VolumeService over the use cases. Nothing of a call is done on gRPC's threads.
+class VolumeServiceDoor final : public v1::VolumeService::CallbackService {
+ public:
+  explicit VolumeServiceDoor(CallRoom& room) : room_(room) {}
+
+  grpc::ServerReadReactor<v1::UploadVolumeRequest>* UploadVolume(grpc::CallbackServerContext* context,
+                                                                 v1::UploadVolumeResponse* response) override;
+  grpc::ServerUnaryReactor* GetVolume(grpc::CallbackServerContext* context, const v1::GetVolumeRequest* request,
+                                      v1::Volume* response) override;
+  grpc::ServerUnaryReactor* ListVolumes(grpc::CallbackServerContext* context, const v1::ListVolumesRequest* request,
+                                        v1::ListVolumesResponse* response) override;
+  grpc::ServerUnaryReactor* DeleteVolume(grpc::CallbackServerContext* context, const v1::DeleteVolumeRequest* request,
+                                         google::protobuf::Empty* response) override;
+  grpc::ServerUnaryReactor* GetHistogram(grpc::CallbackServerContext* context, const v1::GetHistogramRequest* request,
+                                         v1::Histogram* response) override;
+
+ private:
+  CallRoom& room_;
+};
+
+}  // namespace geosis::server::rpc

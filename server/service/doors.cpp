@@ -1,0 +1,97 @@
+#include "server/service/doors.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "server/service/descriptor_limit.h"
+
+namespace geosis::server {
+namespace {
+
+/// Handlers read the store and never wait for results: a few more than processors.
+constexpr std::size_t kHandlerThreads = 16;
+
+http::FrontOptions front_options(const ServeOptions& options) {
+  http::FrontOptions front;
+  front.listen = options.listen;
+  front.tls_certificate = options.tls_certificate;
+  front.tls_key = options.tls_key;
+  front.limits.upload_bytes = options.max_body_bytes;
+  // Some descriptors stay for the store: a client must not keep others' files from being opened.
+  const std::size_t descriptors = raise_descriptor_limit();
+  front.limits.connections = std::min(options.connections, descriptors - descriptors / 4);
+  front.limits.connections_per_peer = options.connections_per_peer;
+  front.limits.head_deadline = front.limits.rate_window = options.patience;
+  front.limits.idle_timeout = options.idle;
+  front.cors.origins = options.cors_origins;
+  front.handler_threads = kHandlerThreads;
+  return front;
+}
+
+http::Router routes_of(const Tenants& tenants, http::ReplyCache& kept, const http::HealthChecks& checks,
+                       const std::filesystem::path& page) {
+  http::Router router;
+  const http::ServicesOf services_of = [&tenants, &kept](const http::Request& request) {
+    return http::Services{tenants.services(request.tenant), kept};
+  };
+  http::add_volume_routes(router, services_of);
+  http::add_extraction_routes(router, services_of);
+  http::add_result_routes(router, services_of);
+  http::add_service_routes(router, checks, page);
+  return router;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<http::Front>> start_front(const ServeOptions& options, const Tenants& tenants,
+                                                 http::ReplyCache& kept, const http::HealthChecks& checks,
+                                                 http::Middleware& gate, Slots& uploads) {
+  http::FrontOptions door = front_options(options);
+  door.middleware = &gate;
+  door.uploads = &uploads;
+  return http::Front::start(door, routes_of(tenants, kept, checks, options.page));
+}
+
+Result<std::unique_ptr<rpc::Door>> start_grpc(const ServeOptions& options, const Tenants& tenants, rpc::CallGate& gate,
+                                              Slots& uploads, Log& log) {
+  if (options.grpc.empty()) return std::unique_ptr<rpc::Door>();
+  raise_descriptor_limit();
+  rpc::DoorOptions door;
+  door.listen = options.grpc;
+  door.tls_certificate = options.tls_certificate;
+  door.tls_key = options.tls_key;
+  door.upload_bytes = options.max_body_bytes;
+  door.patience = options.patience;
+  auto started =
+      rpc::Door::start(door, {.services_of = [&tenants](const std::string& tenant) { return tenants.services(tenant); },
+                              .gate = gate,
+                              .uploads = uploads,
+                              .say =
+                                  [&log](const std::string& line) {
+                                    log.write(LogLevel::debug, "grpc", {{"says", line}});
+                                  }});
+  if (started || started.error().code != ErrorCode::unavailable) return started;
+  return Error{ErrorCode::unavailable,
+               started.error().message + "; --grpc HOST:PORT takes another address for gRPC, --grpc off none"};
+}
+
+Result<std::unique_ptr<http::Front>> start_admin(const ServeOptions& options, const http::HealthChecks& checks,
+                                                 std::function<std::string()> metrics, Log& log) {
+  if (options.admin.empty()) return std::unique_ptr<http::Front>();
+  http::Router router;
+  http::add_health_routes(router, checks);
+  http::add_metrics_route(router, std::move(metrics));
+  http::FrontOptions door;
+  door.listen = options.admin;
+  door.limits.connections = 64;
+  door.handler_threads = 2;
+  auto front = http::Front::start(door, std::move(router));
+  if (!front && options.admin == kDefaultAdmin) {
+    log.write(LogLevel::warning, "no metrics: another program has their port",
+              {{"address", options.admin}, {"problem", front.error().message}});
+    return std::unique_ptr<http::Front>();
+  }
+  return front;
+}
+
+}  // namespace geosis::server

@@ -1,0 +1,84 @@
+#include "server/grpc/acceptor.h"
+
+#include <mutex>
+#include <vector>
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+namespace geosis::server::rpc {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// A connected socket.
+Descriptor connect_to(std::uint16_t port) {
+  Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  EXPECT_EQ(::connect(socket.number(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  return socket;
+}
+
+/// Whether the other side hangs up before it has said anything.
+bool is_refused(const Descriptor& socket) {
+  char byte = 0;
+  return ::recv(socket.number(), &byte, 1, 0) <= 0;
+}
+
+class AcceptorTest : public testing::Test {
+ protected:
+  /// Keeps what it is handed, and greets it.
+  Acceptor make(Acceptor::Limits limits) {
+    return {*Listener::open("127.0.0.1:0"), limits,
+            [this](Descriptor socket) {
+              EXPECT_EQ(::send(socket.number(), "!", 1, MSG_NOSIGNAL), 1);
+              const std::lock_guard lock(mutex_);
+              held_.push_back(std::move(socket));
+            },
+            [this] { ++ticks_; }};
+  }
+  void hang_up() {
+    const std::lock_guard lock(mutex_);
+    held_.clear();
+  }
+
+  std::mutex mutex_;
+  std::vector<Descriptor> held_;
+  std::atomic<int> ticks_{0};
+};
+
+TEST_F(AcceptorTest, TakesSoManyAndRefusesTheRest) {
+  Acceptor acceptor = make({.connections = 3, .connections_per_peer = 10});
+  std::vector<Descriptor> clients;
+  for (int n = 0; n < 5; ++n) {
+    clients.push_back(connect_to(acceptor.port()));
+    EXPECT_EQ(is_refused(clients.back()), n >= 3) << n;
+  }
+  EXPECT_EQ(acceptor.connections(), 3u);
+  hang_up();
+  EXPECT_FALSE(is_refused(connect_to(acceptor.port())));  // those that ended make room
+}
+
+TEST_F(AcceptorTest, OnePeerGetsHisShareOnly) {
+  Acceptor acceptor = make({.connections = 10, .connections_per_peer = 2});
+  const Descriptor first = connect_to(acceptor.port()), second = connect_to(acceptor.port());
+  EXPECT_FALSE(is_refused(first) || is_refused(second));
+  EXPECT_TRUE(is_refused(connect_to(acceptor.port())));
+}
+
+TEST_F(AcceptorTest, TicksAndStops) {
+  Acceptor acceptor = make({.connections = 3, .connections_per_peer = 3});
+  const std::uint16_t port = acceptor.port();
+  while (ticks_ < 2) std::this_thread::sleep_for(5ms);
+  acceptor.stop();
+  acceptor.stop();
+  EXPECT_TRUE(Listener::open("127.0.0.1:" + std::to_string(port)));  // its port is free
+}
+
+}  // namespace
+}  // namespace geosis::server::rpc

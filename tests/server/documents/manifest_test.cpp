@@ -51,7 +51,7 @@ ManifestUrls urls() {
 
 Json manifest_of(const VolumeDescription& volume, const ReconstructOptions& options,
                  std::vector<ReconstructedLevel> levels) {
-  return manifest_document(volume, options, {std::move(levels)}, urls());
+  return manifest_document(volume, options, {.levels = std::move(levels)}, urls());
 }
 
 TEST(ManifestDocument, NamesVolumeRequestAndEngine) {

@@ -11,7 +11,7 @@ import { createInterface } from 'node:readline';
 import { fileURLToPath } from 'node:url';
 
 const GEOSIS = process.env.GEOSIS;
-const PAGE = fileURLToPath(new URL('../../viewer/dist', import.meta.url));
+const PAGE = process.env.GEOSIS_TEST_PAGE ?? fileURLToPath(new URL('../../viewer/dist', import.meta.url));
 const folder = mkdtempSync(join(tmpdir(), 'geosis-e2e-'));
 
 async function startServer() {

@@ -1,5 +1,6 @@
 #include "server/http/dispatcher.h"
 
+#include <string_view>
 #include <utility>
 
 #include "server/http/conditional.h"
@@ -44,6 +45,15 @@ auto teller(Middleware& middleware, Answered answered, Dispatcher::Clock::time_p
     } catch (...) {  // a lost line is no reason to lose the connection
     }
   };
+}
+
+/// What a key opened is for its holder: with "public" a cache between would show it to whoever asks next.
+void keep_to_its_caller(const Request& request, Reply& reply) {
+  constexpr std::string_view kPublic = "public";
+  if (request.header("authorization") == nullptr) return;
+  for (auto& [name, value] : reply.headers) {
+    if (name == "Cache-Control" && value.starts_with(kPublic)) value.replace(0, kPublic.size(), "private");
+  }
 }
 
 template <class Call>
@@ -125,6 +135,7 @@ Reply Dispatcher::finish(const Request& request, Reply reply, std::uint64_t byte
   if (!reply.pending) {
     apply_conditions(request, reply);
     if (request.method != "OPTIONS") apply_cors(cors_, request, reply);
+    keep_to_its_caller(request, reply);
     reply.headers.emplace_back("X-Request-Id", id);
   }
   if (!middleware_) return reply;

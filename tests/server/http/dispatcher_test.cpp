@@ -49,6 +49,19 @@ TEST(Dispatcher, TellsTheMethodsOfAPath) {
   EXPECT_EQ(answer_of(dispatcher, "OPTIONS", "/nothing").status, 404);
 }
 
+TEST(Dispatcher, LetsNoCacheShareWhatAKeyOpened) {
+  Router routes;
+  routes.get("/level", [](const Request&) {
+    Reply reply;
+    reply.headers = {{"Cache-Control", "public, max-age=31536000, immutable"}};
+    return reply;
+  });
+  const Dispatcher dispatcher(std::move(routes), {});
+  EXPECT_EQ(header_of(answer_of(dispatcher, "GET", "/level"), "Cache-Control"), "public, max-age=31536000, immutable");
+  EXPECT_EQ(header_of(answer_of(dispatcher, "GET", "/level", {{"authorization", "Bearer k"}}), "Cache-Control"),
+            "private, max-age=31536000, immutable");
+}
+
 TEST(Dispatcher, GivesEveryRequestAnIdOfItsOwn) {
   const Dispatcher dispatcher = dispatcher_for({});
   EXPECT_NE(header_of(answer_of(dispatcher, "GET", "/things/a"), "X-Request-Id"),

@@ -225,6 +225,19 @@ class Watching(WithServer):
             self.assertEqual(self.server.call("GET", "/livez", address=address)[0], 200)
             self.assertTrue(json.loads(self.server.call("GET", "/readyz", address=address)[2])["ready"])
 
+    def test_the_probe_command_says_what_they_say(self):
+        for address in (self.server.address, self.server.admin):
+            self.assertEqual(run("probe", f"http://{address}/livez").returncode, 0)
+        with socket.create_server(("127.0.0.1", 0)) as silent:
+            silent_url = f"http://127.0.0.1:{silent.getsockname()[1]}/"
+            for arguments, said in (((f"http://{self.server.address}/nothing",), "HTTP/1.1 404 Not Found: "),
+                                    ((silent_url, "--timeout-seconds", "1"), "no answer"),
+                                    ((f"http://127.0.0.1:{free_port()}/",), "cannot connect"),
+                                    (("https://127.0.0.1/",), "expected http://"), (("http:///livez",), "expected http://"),
+                                    (("http://127.0.0.1/a\r\nb",), "expected http://")):
+                asked = run("probe", *arguments)
+                self.assertEqual((asked.returncode, said in asked.stderr), (1, True), (arguments, asked.stderr))
+
 
 class Errors(WithServer):
     def test_errors_tell_nothing_of_the_machine(self):

@@ -11,6 +11,9 @@ namespace {
 /// Handlers read the store and never wait for results: a few more than processors.
 constexpr std::size_t kHandlerThreads = 16;
 
+/// Connections of gRPC carry many calls each, and cost more.
+constexpr std::size_t kHttpToGrpcConnections = 16;
+
 http::FrontOptions front_options(const ServeOptions& options) {
   http::FrontOptions front;
   front.listen = options.listen;
@@ -61,6 +64,8 @@ Result<std::unique_ptr<rpc::Door>> start_grpc(const ServeOptions& options, const
   door.tls_certificate = options.tls_certificate;
   door.tls_key = options.tls_key;
   door.upload_bytes = options.max_body_bytes;
+  door.connections = std::max(options.connections / kHttpToGrpcConnections, std::size_t{1});
+  door.connections_per_peer = std::max(options.connections_per_peer / kHttpToGrpcConnections, std::size_t{1});
   door.patience = options.patience;
   auto started =
       rpc::Door::start(door, {.services_of = [&tenants](const std::string& tenant) { return tenants.services(tenant); },

@@ -64,7 +64,8 @@ Command add_serve_command(CLI::App& app) {
   flag("--memory", options.memory_bytes, "that computing may take, by estimate; 0 = 70 % of what is there")
       ->type_name("BYTES");
   flag("--max-body", options.max_body_bytes, "largest upload")->type_name("BYTES");
-  flag("--connections", options.connections, "clients at one time")->check(CLI::Range(1, 1'000'000));
+  flag("--connections", options.connections, "clients at one time; of gRPC a sixteenth")
+      ->check(CLI::Range(1, 1'000'000));
   flag("--peer-connections", options.connections_per_peer, "of them from one address; a proxy is one address")
       ->check(CLI::Range(1, 1'000'000));
   flag("--patience-seconds", arguments->patience_seconds, "for a request's head; minimum rates are judged as long")

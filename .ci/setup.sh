@@ -15,20 +15,41 @@ missing_packages() {
   done
 }
 
+as_root() {
+  if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi
+}
+
+update_package_lists() {
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get update -q
+}
+
 # install_packages LIST...: installs what the lists name and this machine lacks. Without anything missing it needs no
 # network.
 install_packages() {
   command -v dpkg-query >/dev/null || fail "this is not Debian: install what $* lists, then use cmake --preset release"
-  local missing as_root=()
+  local missing
   missing=$(missing_packages "$@")
   [ -n "$missing" ] || return 0
   echo "Installing missing Debian packages:" $missing
-  if [ "$(id -u)" -ne 0 ]; then
-    command -v sudo >/dev/null || fail "neither root nor sudo: ask an administrator for: apt-get install" $missing
-    as_root=(sudo)
-  fi
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -q
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $missing
+  [ "$(id -u)" -eq 0 ] || command -v sudo >/dev/null ||
+    fail "neither root nor sudo: ask an administrator for: apt-get install" $missing
+  update_package_lists
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -q -y --no-install-recommends $missing
+}
+
+# unpack_package PACKAGE COMMAND: a program of a package that would start a daemon of its own if it were installed, into
+# build/PACKAGE; nothing if this machine has the command.
+unpack_package() {
+  local package=$1 command=$2 folder=build/$1
+  PATH=$PATH:/usr/sbin command -v "$command" >/dev/null && return
+  [ -e "$folder/usr/sbin/$command" ] && return
+  echo "Fetching $command into $folder"
+  mkdir -p "$folder"
+  (cd "$folder" && apt-get download -q "$package") || {
+    update_package_lists
+    (cd "$folder" && apt-get download -q "$package")
+  }
+  dpkg-deb --extract "$folder/$package"_*.deb "$folder"
 }
 
 # Fetches the page's packages as the lock file says and bundles it, if it is not newer than its sources.

@@ -18,6 +18,8 @@ constexpr double kMemoryPerTriangle = 125;  // of M0
 constexpr double kFixedSeconds = 0.15;      // of one core
 constexpr double kSecondsPerTriangle = 2.2e-6;
 constexpr double kParallelShare = 0.85;
+constexpr double kGridMemoryPerSample = 8;  // of laying a structural grid, which is over before there are triangles
+constexpr double kGridSecondsPerSample = 0.25e-6;
 
 /// Triangles of all levels together, for each of M0.
 double levels_per_triangle(const ReconstructOptions& options) {
@@ -42,12 +44,13 @@ ReconstructEstimate estimate_reconstruction(const BrickedVolume& samples, const 
   const bool is_filled = options.fill.method != FillMethod::none && has_missing(samples);
   const double threads = std::max(options.threads, 1);
   const double bytes_per_triangle = kBytesPerTriangle + kMoreBytesPerAttribute * attributes(options, is_filled);
-  const double one_core = kFixedSeconds + kSecondsPerTriangle * triangles;
+  const double laid = options.grid == GridChoice::given ? 0 : static_cast<double>(samples.shape().count());
+  const double one_core = kFixedSeconds + kSecondsPerTriangle * triangles + kGridSecondsPerSample * laid;
+  const double memory = std::max(kMemoryPerTriangle * triangles, kGridMemoryPerSample * laid);
   return {
       .triangles = static_cast<std::uint64_t>(triangles),
       .bytes = static_cast<std::uint64_t>(kFixedBytes + bytes_per_triangle * levels_per_triangle(options) * triangles),
-      .memory_bytes =
-          static_cast<std::uint64_t>(kFixedMemory + kMemoryPerThread * threads + kMemoryPerTriangle * triangles),
+      .memory_bytes = static_cast<std::uint64_t>(kFixedMemory + kMemoryPerThread * threads + memory),
       .processor_seconds = one_core,
       .seconds = one_core * (1 - kParallelShare + kParallelShare / threads)};
 }

@@ -17,7 +17,8 @@ struct ReconstructEstimate {
 };
 
 /// From the volume's index alone: no sample is read. docs/estimates.md says how near it comes. Bodies that the request
-/// leaves out, and levels by distance or cost, are counted as if everything were kept.
+/// leaves out, and levels by distance or cost, are counted as if everything were kept; a structural grid, as if it were
+/// not there yet and had the surface of the axis grid.
 ReconstructEstimate estimate_reconstruction(const BrickedVolume& samples, const ReconstructOptions& options);
 
 /// Memory that importing a file takes at the peak, whatever its size. docs/estimates.md.

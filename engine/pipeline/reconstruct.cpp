@@ -117,7 +117,7 @@ class Levels {
     if (made) made = timed(run_.timings.encode, [&] { return finish(); });
     if (made) made = timed(run_.timings.certify, [&] { return compare(); });
     if (!made) return std::move(made).error();
-    return Reconstruction{.grid = std::nullopt, .levels = std::move(levels_)};
+    return Reconstruction{std::move(levels_)};
   }
 
  private:

@@ -103,8 +103,8 @@ struct GridReport {
 };
 
 struct Reconstruction {
-  std::optional<GridReport> grid;          ///< unset when the given grid was asked for
   std::vector<ReconstructedLevel> levels;  ///< level 0 = finest; empty when nothing is in the range
+  std::optional<GridReport> grid = {};     ///< unset when the given grid was asked for
 };
 
 /// Seconds of each stage on the caller's clock, for the caller's eyes only: never part of a result. Levels are encoded

@@ -17,7 +17,7 @@ namespace geosis {
 namespace {
 
 const char* const kStage = "structure";
-constexpr std::int64_t kFewNodes = 4'000'000;  // up to which solving takes a second or two anyway
+constexpr std::int64_t kFewNodes = 2'000'000;  // up to which solving takes a second anyway
 constexpr std::int32_t kWidestSpacing = 16;
 
 /// Fractions of the whole for one phase of it.
@@ -97,9 +97,14 @@ void fill_agreement(const DipField& field, int threads, StructuralGrid& grid) {
   });
 }
 
+/// Of places that agree at all.
 double share_below_half(const std::vector<std::uint8_t>& agreement) {
-  const auto below = std::count_if(agreement.begin(), agreement.end(), [](std::uint8_t a) { return a < 128; });
-  return agreement.empty() ? 0 : static_cast<double>(below) / static_cast<double>(agreement.size());
+  std::int64_t all = 0, below = 0;
+  for (const std::uint8_t a : agreement) {
+    all += a > 0;
+    below += a > 0 && a < 128;
+  }
+  return all == 0 ? 0 : static_cast<double>(below) / static_cast<double>(all);
 }
 
 /// Of links within the box that agree at all: those whose layers are off by more than half a sample.

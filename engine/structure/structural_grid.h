@@ -25,8 +25,9 @@ struct DipReport {
 /// How far the layers of a structural grid are to be trusted.
 struct StructureReport {
   DipReport dips;
-  double unreliable_share = 0;  ///< of samples: the least agreement of their trace's links there is below one half
-  double untied_share = 0;      ///< of links between layers: off by more than half a sample from the dip measured there
+  /// Of samples whose trace agrees with all its neighbours at all: the least of these agreements is below one half.
+  double unreliable_share = 0;
+  double untied_share = 0;  ///< of links between layers: off by more than half a sample from the dip measured there
   bool operator==(const StructureReport&) const = default;
 };
 

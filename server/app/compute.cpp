@@ -46,6 +46,8 @@ ReconstructInput reconstruct_input(const ExtractionInput& input, const Reconstru
           .geometry = input.volume.geometry,
           .has_lengths = has_lengths(input.volume, options),
           .filled = input.filled,
+          .grid = input.grid,
+          .dips = input.dips,
           .attribute_volume = input.attribute_volume};
 }
 
@@ -65,7 +67,7 @@ Result<Json> compute_extraction(Extraction& extraction, const ExtractionInput& i
       stoppable.stop();
       return;
     }
-    if (timings.first_level == 0) timings.first_level = timings.load + timings.fill + seconds();
+    if (timings.first_level == 0) timings.first_level = timings.load + timings.grid + timings.fill + seconds();
     extraction.add_level(early_level_document(level, number, input.volume, options, urls));
   };
 
@@ -73,7 +75,8 @@ Result<Json> compute_extraction(Extraction& extraction, const ExtractionInput& i
   const auto result = reconstruct(reconstruct_input(input, options), options, stoppable, &stages, show_level);
   if (failed) return *std::move(failed);
   if (!result) return result.error();
-  timings.total = timings.load + timings.fill + seconds();
+  timings.total = timings.load + timings.grid + timings.fill + seconds();
+  timings.grid += stages.grid;
   timings.fill += stages.fill;
   timings.extract = stages.extract;
   timings.simplify = stages.simplify;

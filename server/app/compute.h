@@ -19,6 +19,8 @@ using PartWriter = std::function<Result<void>(int level, int part, std::span<con
 struct ExtractionInput {
   const VolumeSummary& volume;
   const BrickedVolume& samples;
+  const DipReport* dips = nullptr;                  ///< when the grid is chosen by them and they are known already
+  const StructuralGrid* grid = nullptr;             ///< when one is needed and it is there already
   const FilledVolume* filled = nullptr;             ///< when the request fills and the fill is there already
   const BrickedVolume* attribute_volume = nullptr;  ///< when the request names one
 };
@@ -27,7 +29,7 @@ ReconstructInput reconstruct_input(const ExtractionInput& input, const Reconstru
 
 /// Computes an extraction: every part is kept, then its level shown, coarsest first; the manifest is returned.
 ///
-/// timings   load and fill are what came before; the others are set.
+/// timings   load, grid and fill are what came before; the others are set.
 Result<Json> compute_extraction(Extraction& extraction, const ExtractionInput& input, const ReconstructOptions& options,
                                 const ReconstructFunction& reconstruct, const PartWriter& write_part,
                                 Progress& progress, ExtractionTimings& timings);

@@ -9,13 +9,10 @@ namespace {
 
 Json timings_document(const std::optional<ExtractionTimings>& timings) {
   if (!timings) return nullptr;
-  return {{"load", timings->load},
-          {"fill", timings->fill},
-          {"extract", timings->extract},
-          {"simplify", timings->simplify},
-          {"encode", timings->encode},
-          {"certify", timings->certify},
-          {"first_level", timings->first_level},
+  return {{"load", timings->load},         {"grid", timings->grid},
+          {"fill", timings->fill},         {"extract", timings->extract},
+          {"simplify", timings->simplify}, {"encode", timings->encode},
+          {"certify", timings->certify},   {"first_level", timings->first_level},
           {"total", timings->total}};
 }
 

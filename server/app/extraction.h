@@ -18,7 +18,7 @@ namespace geosis::server {
 
 /// Seconds of each stage so far; first_level = until the coarsest level could leave.
 struct ExtractionTimings {
-  double load = 0, fill = 0, extract = 0, simplify = 0, encode = 0, certify = 0, first_level = 0, total = 0;
+  double load = 0, grid = 0, fill = 0, extract = 0, simplify = 0, encode = 0, certify = 0, first_level = 0, total = 0;
 };
 
 /// Reads the bytes of one encoded part.

@@ -85,6 +85,7 @@ Result<void> Extractions::purge_results_of(const std::string& volume) {
     if (auto done = remove_blobs(id); !done) return done;
     if (auto done = store_.remove(result_key(volume, id)); !done) return done;
   }
+  if (auto done = structures_.remove(volume); !done) return done;
   return fills_.remove(volume);
 }
 

@@ -3,6 +3,7 @@
 #include <map>
 #include <utility>
 
+#include "engine/pipeline/grid_stage.h"
 #include "server/app/extractions.h"
 #include "server/documents/ids.h"
 #include "server/documents/request.h"
@@ -106,6 +107,8 @@ Result<void> Extractions::compute(Extraction& extraction, const std::string& own
 ExtractionInput Extractions::Opened::input() const {
   return {.volume = volume->summary,
           .samples = *volume->samples,
+          .dips = dips ? &*dips : nullptr,
+          .grid = grid.get(),
           .filled = filled ? filled->samples.get() : nullptr,
           .attribute_volume = attribute_volume ? attribute_volume->samples.get() : nullptr};
 }
@@ -121,10 +124,28 @@ Result<Extractions::Opened> Extractions::open(const Extraction::Identity& identi
   auto other = open_attribute_volume(*options, (*volume)->summary);
   if (!other) return std::move(other).error();
   timings.load = seconds_since(start);
-  auto filled = fill(*volume, *options, progress);
+  Opened opened{.options = *std::move(options), .volume = *std::move(volume), .attribute_volume = *std::move(other)};
+  if (auto grid = open_grid(opened, progress); !grid) return volumes_.judged(identity.volume, grid.error());
+  timings.grid = seconds_since(start) - timings.load;
+  auto filled = fill(opened.volume, opened.options, progress);
   if (!filled) return volumes_.judged(identity.volume, filled.error());
-  timings.fill = seconds_since(start) - timings.load;
-  return Opened{*std::move(options), *std::move(volume), *std::move(filled), *std::move(other)};
+  opened.filled = *std::move(filled);
+  timings.fill = seconds_since(start) - timings.load - timings.grid;
+  return opened;
+}
+
+Result<void> Extractions::open_grid(Opened& opened, Progress& progress) {
+  if (opened.options.grid == GridChoice::given) return {};
+  if (opened.options.grid == GridChoice::automatic) {
+    const auto dips = structures_.dips(*opened.volume, progress);
+    if (!dips) return dips.error();
+    opened.dips = *dips;
+    if (!prefers_structure(*dips)) return {};
+  }
+  auto grid = structures_.grid(*opened.volume, progress);
+  if (!grid) return std::move(grid).error();
+  opened.grid = *std::move(grid);
+  return {};
 }
 
 /// The volume that the attribute `value` is of; null when the request names none.

@@ -26,6 +26,7 @@ Extractions::Extractions(BlobStore& store, Volumes& volumes, JobQueue& queue, st
       threads_(threads),
       reconstruct_(std::move(reconstruct)),
       fills_(store, tenant_, threads),
+      structures_(store, tenant_, threads),
       records_(store, tenant_),
       watch_(store, records_, tenant_, timing, [this](const auto& extraction, const std::string& owner) {
         std::promise<bool> recorded;

@@ -18,6 +18,7 @@
 #include "server/app/extraction_watch.h"
 #include "server/app/fills.h"
 #include "server/app/run_record.h"
+#include "server/app/structures.h"
 #include "server/app/volumes.h"
 #include "server/jobs/job_queue.h"
 #include "server/store/blob_store.h"
@@ -89,7 +90,7 @@ class Extractions {
   Result<void> withdraw(const std::string& id);
   /// Removes a stored result.
   Result<void> purge(const std::string& id);
-  /// Removes all that was derived from a volume: results, and its filled samples.
+  /// Removes all that was derived from a volume: results, and its filled samples and grid.
   Result<void> purge_results_of(const std::string& volume);
   /// Removes what is left of results and fills whose volume or request is gone.
   Result<void> collect_garbage();
@@ -159,7 +160,9 @@ class Extractions {
   struct Opened {
     ReconstructOptions options;
     std::shared_ptr<const StoredVolume> volume;
-    std::shared_ptr<const FilledStoredVolume> filled;      ///< null when nothing is filled
+    std::optional<DipReport> dips{};                       ///< where the grid is chosen by them
+    std::shared_ptr<const StructuralGrid> grid{};          ///< null on the axis grid
+    std::shared_ptr<const FilledStoredVolume> filled{};    ///< null when nothing is filled
     std::shared_ptr<const StoredVolume> attribute_volume;  ///< null when the request names none
 
     ExtractionInput input() const;
@@ -167,6 +170,8 @@ class Extractions {
   Result<Opened> open(const Extraction::Identity& identity, Progress& progress, ExtractionTimings& timings);
   Result<std::shared_ptr<const StoredVolume>> open_attribute_volume(const ReconstructOptions& options,
                                                                     const VolumeSummary& volume);
+  /// Dips and grid that the request needs.
+  Result<void> open_grid(Opened& opened, Progress& progress);
   Result<std::shared_ptr<const FilledStoredVolume>> fill(std::shared_ptr<const StoredVolume> volume,
                                                          const ReconstructOptions& options, Progress& progress);
   Result<std::shared_ptr<Extraction>> find_done(const std::string& id);
@@ -188,6 +193,7 @@ class Extractions {
   const ReconstructFunction reconstruct_;
   ExtractionEvents events_;
   Fills fills_;
+  Structures structures_;
   std::mutex mutex_;
   std::map<std::string, std::shared_ptr<Entry>> entries_;  ///< recently used, by id
   std::map<BlobKey, std::weak_ptr<Job>> making_;           ///< files that are made on request, by their key

@@ -1,6 +1,5 @@
 #include "server/app/fills.h"
 
-#include <chrono>
 #include <utility>
 
 #include "engine/pipeline/reconstruct.h"
@@ -10,7 +9,6 @@ namespace geosis::server {
 namespace {
 
 constexpr std::size_t kRecentFills = 4;
-constexpr std::chrono::milliseconds kAskAgain{50};
 
 /// "2-rbf-polyharmonic-auto-12.5": the canonical choice as a name in the store.
 std::string name_of_fill(const FillOptions& options) {
@@ -24,41 +22,14 @@ std::string name_of_fill(const FillOptions& options) {
 
 }  // namespace
 
-/// The right to fill under one key, which one thread has at a time.
-class Fills::Turn {
- public:
-  /// Waits for it; false when cancelled.
-  bool take(Fills& fills, const BlobKey& key, const Progress& progress) {
-    std::unique_lock lock(fills.mutex_);
-    while (fills.being_filled_.contains(key)) {
-      if (progress.cancelled()) return false;
-      fills.turn_ended_.wait_for(lock, kAskAgain);
-    }
-    fills.being_filled_.insert(key);
-    fills_ = &fills;
-    key_ = key;
-    return true;
-  }
-  ~Turn() {
-    if (fills_ == nullptr) return;
-    const std::lock_guard lock(fills_->mutex_);
-    fills_->being_filled_.erase(key_);
-    fills_->turn_ended_.notify_all();
-  }
-
- private:
-  Fills* fills_ = nullptr;
-  BlobKey key_;
-};
-
 Fills::Fills(BlobStore& store, std::string tenant, int threads)
     : store_(store), tenant_(std::move(tenant)), threads_(threads) {}
 
 Result<std::shared_ptr<const FilledStoredVolume>> Fills::fill(std::shared_ptr<const StoredVolume> volume,
                                                               const FillOptions& options, Progress& progress) {
   const BlobKey key = folder(volume->summary.id) + name_of_fill(options);
-  Turn turn;
-  if (!turn.take(*this, key, progress)) return Error{ErrorCode::cancelled, "filling missing samples was cancelled"};
+  KeyTurns::Turn turn;
+  if (!turn.take(turns_, key, progress)) return Error{ErrorCode::cancelled, "filling missing samples was cancelled"};
   if (auto known = recent(key)) return known;
   store_.touch(key);
   auto samples = load_or_fill(key, *volume->samples, options, progress);

@@ -1,16 +1,15 @@
 #pragma once
 
-#include <condition_variable>
 #include <list>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <string>
 
 #include "engine/base/progress.h"
 #include "engine/base/result.h"
 #include "engine/missing/fill.h"
 #include "server/app/file_identity.h"
+#include "server/app/key_turns.h"
 #include "server/app/volumes.h"
 #include "server/store/blob_store.h"
 
@@ -40,7 +39,6 @@ class Fills {
   Result<void> remove(const std::string& volume);
 
  private:
-  class Turn;
   BlobKey folder(const std::string& volume) const { return tenant_ + "/volumes/" + volume + "/fills/"; }
   std::shared_ptr<const FilledStoredVolume> recent(const BlobKey& key);
   void remember(const BlobKey& key, std::shared_ptr<const FilledStoredVolume> filled);
@@ -58,9 +56,8 @@ class Fills {
   BlobStore& store_;
   const std::string tenant_;
   const int threads_;
-  std::mutex mutex_;
-  std::condition_variable turn_ended_;
-  std::set<BlobKey> being_filled_;
+  KeyTurns turns_;
+  std::mutex mutex_;          // of recent_
   std::list<Recent> recent_;  ///< most recently used first
 };
 

@@ -53,7 +53,8 @@ std::vector<Derived> derived_among(const std::vector<BlobInfo>& blobs) {
         group.is_whole = true;
         std::swap(group.blobs.front(), group.blobs.back());
       }
-    } else if (segments.size() == 5 && segments[1] == "volumes" && segments[3] == "fills") {
+    } else if (segments.size() == 5 && segments[1] == "volumes" &&
+               (segments[3] == "fills" || segments[3] == "structures")) {
       Derived& group = groups[blob.key];
       group.add(blob);
       group.is_whole = true;

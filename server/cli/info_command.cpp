@@ -2,9 +2,12 @@
 #include <filesystem>
 #include <memory>
 
+#include "engine/base/parallel.h"
+#include "engine/pipeline/grid_stage.h"
 #include "server/cli/commands.h"
 #include "server/cli/input.h"
 #include "server/cli/progress_bar.h"
+#include "server/documents/grid_report.h"
 #include "server/documents/volume_document.h"
 
 namespace geosis::server {
@@ -16,9 +19,16 @@ Command add_info_command(CLI::App& app) {
     ProgressBar progress;
     const auto volume = input->import(progress);
     if (!volume) return volume.error();
+    const auto dips = report_dips(*volume->samples, default_threads(), progress);
+    if (!dips) return dips.error();
     progress.clear();
     const auto name = std::filesystem::path(input->path()).filename().string();
-    std::fputs(document_text(volume_document(volume->description, name)).c_str(), stdout);
+    Json document = volume_document(volume->description, name);
+    const GridDecision decision = decide_grid(*dips);
+    document["structure"] = dips_document(*dips);
+    document["structure"]["auto"] = name_of(decision.is_structural ? GridChoice::structural : GridChoice::given);
+    document["structure"]["because"] = decision.because;
+    std::fputs(document_text(document).c_str(), stdout);
     return {};
   };
 }

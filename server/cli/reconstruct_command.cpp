@@ -7,6 +7,7 @@
 
 #include "engine/base/parallel.h"
 #include "engine/pipeline/describe_bodies.h"
+#include "engine/pipeline/grid_stage.h"
 #include "engine/pipeline/stages.h"
 #include "server/cli/commands.h"
 #include "server/cli/input.h"
@@ -14,6 +15,7 @@
 #include "server/cli/level_table.h"
 #include "server/cli/progress_bar.h"
 #include "server/cli/request_arguments.h"
+#include "server/documents/grid_report.h"
 #include "server/documents/ids.h"
 #include "server/documents/manifest.h"
 #include "server/documents/request.h"
@@ -62,6 +64,16 @@ void print_volume(const VolumeDescription& volume) {
     std::printf("warning: %s: %s\n", warning.code.c_str(), warning.detail.c_str());
 }
 
+void print_grid(GridChoice asked, const GridReport& report) {
+  if (asked == GridChoice::automatic) std::printf("grid: %s\n", decide_grid(report.dips).because.c_str());
+  if (!report.structure) {
+    std::printf("grid: as given\n");
+    return;
+  }
+  std::printf("grid: structural, %d layers; %.1f %% of the samples unreliable, %.1f %% of the links not tied\n",
+              report.layers, 100 * report.structure->unreliable_share, 100 * report.structure->untied_share);
+}
+
 /// The volume that the attribute `value` is of, whose id takes the place of its file's name.
 Result<std::optional<ImportedVolume>> import_attribute_volume(const ReconstructArguments& arguments,
                                                               const VolumeSummary& volume, ReconstructOptions& options,
@@ -105,6 +117,11 @@ Result<void> run_reconstruct(const ReconstructArguments& arguments) {
                          .geometry = volume->description.geometry,
                          .has_lengths = has_lengths(summary, *options),
                          .attribute_volume = *other ? (*other)->samples.get() : nullptr};
+  const auto grid = grid_stage(input, *options, progress);  // once for both that follow
+  if (!grid) return grid.error();
+  input.grid = grid->structural;
+  if (grid->report) input.dips = &grid->report->dips;
+  const double grid_seconds = watch.lap();
   const auto filled = fill_stage(input, *options, progress);  // once for both that follow
   if (!filled) return filled.error();
   input.filled = filled->filled;
@@ -122,13 +139,14 @@ Result<void> run_reconstruct(const ReconstructArguments& arguments) {
 
   progress.clear();
   print_volume(volume->description);
+  if (reconstruction->grid) print_grid(options->grid, *reconstruction->grid);
   std::fputs(level_table(*reconstruction).c_str(), stdout);
   std::fputs(body_table(*bodies).c_str(), stdout);
   std::printf(
-      "seconds: import %.2f, fill %.2f, extract %.2f, simplify %.2f, encode %.2f, certify %.2f, "
+      "seconds: import %.2f, grid %.2f, fill %.2f, extract %.2f, simplify %.2f, encode %.2f, certify %.2f, "
       "bodies %.2f, write %.2f, total %.2f\n",
-      import_seconds, fill_seconds, timings.extract, timings.simplify, timings.encode, timings.certify, bodies_seconds,
-      write_seconds, total.lap());
+      import_seconds, grid_seconds, fill_seconds, timings.extract, timings.simplify, timings.encode, timings.certify,
+      bodies_seconds, write_seconds, total.lap());
   return {};
 }
 

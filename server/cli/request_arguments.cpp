@@ -80,6 +80,8 @@ RequestArguments::RequestArguments(CLI::App& command) {
       ->type_name("MODE");
   command.add_flag("--no-cap", no_cap_, "leave the body open where it leaves the survey");
   command.add_option("--region", region_, "nodes to look at, from 0, ends included")->type_name("I0:I1,J0:J1,K0:K1");
+  command.add_option("--grid", grid_, "connect samples as given (default), along reflectors (structural), or auto")
+      ->type_name("GRID");
   command.add_option("--space", space_, "world (default) or index")->type_name("SPACE");
   command.add_option("--velocity", velocity_, "turns the two-way times of a time survey into depths")->type_name("M/S");
   command.add_option("--missing", missing_, "fill missing samples: none (default), linear or rbf")->type_name("METHOD");
@@ -130,6 +132,7 @@ Result<void> RequestArguments::write_shape(Json& document) const {
     document["velocity"] = *std::move(velocity);
   }
   if (!mode_.empty()) document["mode"] = mode_;
+  if (!grid_.empty()) document["grid"] = grid_;
   if (!space_.empty()) document["space"] = space_;
   if (no_cap_) document["cap"] = false;
   return {};

@@ -31,7 +31,7 @@ class RequestArguments {
 
   std::pair<std::string, std::string> range_;
   std::string request_path_;
-  std::string mode_, region_, space_, velocity_;
+  std::string grid_, mode_, region_, space_, velocity_;
   bool no_cap_ = false;
   std::string missing_, kernel_, steer_, max_distance_;
   std::string min_voxels_, largest_;

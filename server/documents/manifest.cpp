@@ -2,6 +2,7 @@
 
 #include "engine/base/digest.h"
 #include "engine/pipeline/output_space.h"
+#include "server/documents/grid_report.h"
 #include "server/documents/ids.h"
 #include "server/documents/request.h"
 #include "server/documents/request_levels.h"
@@ -121,15 +122,17 @@ Json manifest_document(const VolumeSummary& volume, const ReconstructOptions& op
   for (const auto& level : reconstruction.levels) {
     levels.push_back(level_document(level, levels.size(), volume, options, urls));
   }
-  return {{"id", extraction_id(volume.id, request, kResultVersion)},
-          {"volume", volume.id},
-          {"engine", {{"name", "geosis"}, {"result_version", kResultVersion}}},
-          {"request", request},
-          {"transform", transform},
-          {"origin", {transform[3], transform[7], transform[11]}},
-          {"levels", levels},
-          {"empty", reconstruction.levels.empty()},
-          {"bodies_url", urls.bodies}};
+  Json manifest = {{"id", extraction_id(volume.id, request, kResultVersion)},
+                   {"volume", volume.id},
+                   {"engine", {{"name", "geosis"}, {"result_version", kResultVersion}}},
+                   {"request", request},
+                   {"transform", transform},
+                   {"origin", {transform[3], transform[7], transform[11]}},
+                   {"levels", levels},
+                   {"empty", reconstruction.levels.empty()},
+                   {"bodies_url", urls.bodies}};
+  if (reconstruction.grid) manifest["grid"] = grid_document(options.grid, *reconstruction.grid);
+  return manifest;
 }
 
 Json manifest_document(const VolumeDescription& volume, const ReconstructOptions& options,

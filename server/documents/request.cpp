@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "server/documents/grid_report.h"
 #include "server/documents/object_reader.h"
 #include "server/documents/request_levels.h"
 #include "server/documents/request_sections.h"
@@ -27,7 +28,6 @@ struct FixedField {
 
 const std::vector<FixedField>& fixed_fields() {
   static const std::vector<FixedField> fields = {
-      {"grid", "given"},
       {"preview", false},
   };
   return fields;
@@ -134,6 +134,7 @@ Result<ReconstructOptions> parse_request(const Json& document) {
   ReconstructOptions options;
   options.range = read_range(request);
   options.mode = request.choice("mode", {"exact", "sampled"}) == 0 ? BodyMode::exact : BodyMode::sampled;
+  options.grid = static_cast<GridChoice>(request.choice("grid", {"given", "structural", "auto"}));
   options.index_space = request.choice("space", {"world", "index"}) == 1;
   options.cap = request.boolean("cap", options.cap);
   options.fill = read_missing(request, problem);
@@ -155,6 +156,7 @@ Json request_document(const ReconstructOptions& options, GridShape shape) {
       {"range", {range_end_or_null(options.range.low), range_end_or_null(options.range.high)}},
       {"mode", options.mode == BodyMode::exact ? "exact" : "sampled"},
       {"missing", missing_document(options.fill)},
+      {"grid", name_of(options.grid)},
       {"space", options.index_space ? "index" : "world"},
       {"velocity", options.index_space ? Json(nullptr) : or_null(options.velocity)},  // index space has no times
       {"cap", options.cap},

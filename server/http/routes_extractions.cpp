@@ -110,7 +110,7 @@ Result<Json> one_shot_request(const Request& request) {
   auto range = range_from_text(ends->first, ends->second);
   if (!range) return std::move(range).error();
   Json wanted = {{"range", *std::move(range)}};
-  for (const char* name : {"mode", "space"}) {
+  for (const char* name : {"mode", "grid", "space"}) {
     if (const auto value = parameter(request, name)) wanted[name] = *value;
   }
   if (const auto method = parameter(request, "missing")) wanted["missing"] = {{"method", *method}};
@@ -123,7 +123,7 @@ Result<Json> one_shot_request(const Request& request) {
 Reply extract(Services services, const Request& request, BodyReader& body) {
   const auto wanted = one_shot_request(request);
   if (!wanted) return error_reply(wanted.error());
-  auto options = upload_options(request.query, {"range", "mode", "space", "cap", "missing"});
+  auto options = upload_options(request.query, {"range", "mode", "grid", "space", "cap", "missing"});
   if (!options) return error_reply(options.error());
   const auto memory = memory_to_import(services);
   if (!memory) return error_reply(memory.error());

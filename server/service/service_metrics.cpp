@@ -13,14 +13,12 @@ struct Stage {
   double ExtractionTimings::*seconds;
 };
 
-constexpr Stage kStages[] = {{"load", &ExtractionTimings::load},
-                             {"fill", &ExtractionTimings::fill},
-                             {"extract", &ExtractionTimings::extract},
-                             {"simplify", &ExtractionTimings::simplify},
-                             {"encode", &ExtractionTimings::encode},
-                             {"certify", &ExtractionTimings::certify},
-                             {"first_level", &ExtractionTimings::first_level},
-                             {"total", &ExtractionTimings::total}};
+constexpr Stage kStages[] = {
+    {"load", &ExtractionTimings::load},         {"grid", &ExtractionTimings::grid},
+    {"fill", &ExtractionTimings::fill},         {"extract", &ExtractionTimings::extract},
+    {"simplify", &ExtractionTimings::simplify}, {"encode", &ExtractionTimings::encode},
+    {"certify", &ExtractionTimings::certify},   {"first_level", &ExtractionTimings::first_level},
+    {"total", &ExtractionTimings::total}};
 
 }  // namespace
 

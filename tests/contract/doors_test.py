@@ -172,6 +172,13 @@ def stream(door):
     return parts, manifest
 
 
+def structural_grid(door):
+    created = door.create(survey_of(door), {"range": [0.1, None], "grid": "structural", "levels": [{"ratio": 0.25}]})
+    parts, manifest = door.stream(created["id"])
+    assert manifest["grid"]["chosen"] == "structural" and manifest["grid"]["layers"] > 0, manifest
+    return parts, manifest
+
+
 def nothing_in_range(door):
     created = door.create(ball_of(door), {"range": [1e6, None]})
     parts, manifest = door.stream(created["id"])
@@ -290,7 +297,8 @@ def remove(door):
 
 
 SCENARIOS = [upload, upload_of_raw_samples, upload_for_later, upload_for_later_that_fails, list_of_volumes, histogram,
-             whole_request, extraction, watch_again, stream, nothing_in_range, bodies, one_shot, one_shot_leaves_nothing,
+             whole_request, extraction, watch_again, stream, structural_grid, nothing_in_range, bodies, one_shot,
+             one_shot_leaves_nothing,
              cancel, purge, two_interests, refused_requests, refused_numbers, unknown_ids, refused_files, refused_one_shots,
              remove]
 

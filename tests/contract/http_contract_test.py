@@ -248,11 +248,32 @@ class Extractions(Refusals):
                                          ({"range": [1, 0]}, 400, "/range"),
                                          ({}, 400, "/range"),
                                          ({"range": [0, "a"]}, 400, "/range/1"),
-                                         ({"range": [0, 1], "grid": "structural"}, 422, "/grid"),
+                                         ({"range": [0, 1], "grid": "bent"}, 400, "/grid"),
+                                         ({"range": [0, 1], "preview": True}, 422, "/preview"),
                                          ({"range": [0, 1], "levels": []}, 400, "/levels")):
             self.refused(self.post(request), status, pointer=pointer)
         self.refused(self.post("{nonsense"), 400)
         self.refused(self.post({"range": [0, 1], "region": {"inline": [0, 900], "crossline": [0, 5], "sample": [0, 5]}}), 400)
+
+    def test_grids_that_follow_the_reflectors(self):
+        manifests = {}
+        for grid, space in (("structural", "world"), ("structural", "index"), ("auto", "world")):
+            extraction = done_extraction({**BODY, "grid": grid, "space": space})
+            manifests[grid, space] = manifest = CLIENT.get(f"/v1/extractions/{extraction}/manifest").json()
+            self.assertEqual((manifest["request"]["grid"], manifest["grid"]["asked"]), (grid, grid))
+            self.assertTrue(all(level["manifold"] for level in manifest["levels"]))
+            self.assertEqual(CLIENT.get(f"/v1/extractions/{extraction}/bodies").status, 200)
+        chosen = manifests["structural", "world"]["grid"]
+        self.assertEqual(chosen["chosen"], "structural")
+        self.assertGreaterEqual(chosen["layers"], 64)
+        given = CLIENT.get(f"/v1/extractions/{done_extraction()}/manifest").json()
+        self.assertNotIn("grid", given)
+        self.assertEqual(given["transform"], manifests["structural", "world"]["transform"])
+        one_shot = CLIENT.call("POST", "/v1/extract?range=0.55,inf&grid=structural", body=SURVEY,
+                               headers={"Content-Type": "application/octet-stream"})
+        levels = json.loads(one_shot.parts()[-1][1])["levels"]
+        self.assertEqual([level["triangles"] for level in levels],
+                         [level["triangles"] for level in manifests["structural", "world"]["levels"]])
 
     def test_nothing_in_the_range_is_an_answer(self):
         extraction = done_extraction({"range": [1000, 2000]})

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/missing/fill.h"
+#include "engine/structure/grid_file.h"
 #include "engine/volume/brick_file.h"
 #include "engine/volume/brick_writer.h"
 #include "engine/volume/formats/segy_write.h"
@@ -77,6 +78,19 @@ bool write_fill_seed(const std::filesystem::path& folder) {
       .has_value();
 }
 
+/// A grid of 2 x 3 traces of 5 samples in 9 layers.
+bool write_grid_seed(const std::filesystem::path& folder) {
+  constexpr geosis::GridShape kShape = {2, 3, 5};
+  const std::vector<std::int32_t> path = {0, 0, 1, 1, 2, 3, 3, 4, 4};
+  geosis::StructuralGrid grid;
+  grid.paths = geosis::LayerPaths(kShape, static_cast<std::int32_t>(path.size()));
+  for (std::int32_t i = 0; i < kShape.inlines; ++i) {
+    for (std::int32_t j = 0; j < kShape.crosslines; ++j) grid.paths.set(i, j, path);
+  }
+  grid.agreement.assign(12, 200);
+  return geosis::write_grid_file(grid, folder / "nine_layers").has_value();
+}
+
 // What clients send. The targets of chunks and forms take the size of pieces from a byte before them.
 bool write_text_seeds(const std::filesystem::path& folder) {
   const std::string request =
@@ -108,11 +122,13 @@ int main(int count, char** arguments) {
   }
   const std::filesystem::path folder = arguments[1];
   std::error_code failed;
-  for (const char* target : {"fuzz_import_segy", "fuzz_import_raw", "fuzz_brick_file", "fuzz_fill_file", "fuzz_request",
-                             "fuzz_http_head", "fuzz_http_chunks", "fuzz_http_target", "fuzz_http_form"})
+  for (const char* target :
+       {"fuzz_import_segy", "fuzz_import_raw", "fuzz_brick_file", "fuzz_fill_file", "fuzz_grid_file", "fuzz_request",
+        "fuzz_http_head", "fuzz_http_chunks", "fuzz_http_target", "fuzz_http_form"})
     std::filesystem::create_directories(folder / target, failed);
   const bool written = !failed && write_segy_seed(folder / "fuzz_import_segy") &&
                        write_raw_seed(folder / "fuzz_import_raw") && write_brick_seed(folder / "fuzz_brick_file") &&
-                       write_fill_seed(folder / "fuzz_fill_file") && write_text_seeds(folder);
+                       write_fill_seed(folder / "fuzz_fill_file") && write_grid_seed(folder / "fuzz_grid_file") &&
+                       write_text_seeds(folder);
   return written ? 0 : 1;
 }

@@ -127,6 +127,10 @@ TEST(EstimateReconstruction, GrowsWithTheSurfaceAndItsLevels) {
   ReconstructOptions finest_only = asking({-kOpen, 40});
   finest_only.levels = by_ratio({1});
   EXPECT_LT(estimate_reconstruction(*sphere, finest_only).bytes, large.bytes);
+  ReconstructOptions on_layers = asking({-kOpen, 40});
+  on_layers.grid = GridChoice::structural;
+  EXPECT_GE(estimate_reconstruction(*sphere, on_layers).memory_bytes, 8U * 90 * 90 * 90);
+  EXPECT_GT(estimate_reconstruction(*sphere, on_layers).seconds, large.seconds);
   const auto nothing = estimate_reconstruction(*sphere, asking({1000, kOpen}));
   EXPECT_EQ(nothing.triangles, 0U);
 }

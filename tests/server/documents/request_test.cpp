@@ -125,8 +125,8 @@ TEST(ParseRequest, RefusesRegionsThatAreNoBox) {
 
 TEST(ParseRequest, NamesWhatThisVersionDoesNotSupport) {
   const auto unsupported = ErrorCode::unsupported;
-  expect_refused(R"({"range": [0, 1], "grid": "structural"})", unsupported,
-                 "request /grid: \"structural\"; this version supports only \"given\"");
+  expect_refused(R"({"range": [0, 1], "preview": true})", unsupported,
+                 "request /preview: true; this version supports only false");
 }
 
 TEST(ParseRequest, ShortensLongValuesInMessages) {

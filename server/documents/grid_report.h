@@ -1,0 +1,27 @@
+#pragma once
+
+#include "engine/base/result.h"
+#include "engine/pipeline/reconstruct.h"
+#include "server/documents/json_text.h"
+
+namespace geosis::server {
+
+/// {"period", "inline": {"median", "p95", "p99"}, "crossline": {...}, "warped"}: dips in samples a trace.
+Json dips_document(const DipReport& dips);
+
+/// What dips_document made. errors: malformed_input.
+Result<DipReport> parse_dips_document(const Json& document);
+
+/// What `grid: auto` chooses for such dips, and why, in one sentence.
+struct GridDecision {
+  bool is_structural = false;
+  std::string because;
+};
+GridDecision decide_grid(const DipReport& dips);
+
+/// The manifest's "grid": what was asked for, what was chosen and why, and how far it is to be trusted.
+Json grid_document(GridChoice asked, const GridReport& report);
+
+const char* name_of(GridChoice choice);
+
+}  // namespace geosis::server

@@ -258,6 +258,7 @@ Result<std::shared_ptr<Job>> Extractions::begin(const Extraction::Identity& iden
                                                 JobQueue::Work work) {
   const BlobKey made = key(identity.id, name);
   JobDemand demand = demand_of(identity, Priority::interactive);
+  demand.what += ", " + name;
   const std::lock_guard lock(mutex_);
   std::erase_if(making_, [](const auto& entry) { return entry.second.expired(); });
   if (const auto running = making_[made].lock(); running && !is_final(running->status().state)) return running;

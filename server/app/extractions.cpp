@@ -92,16 +92,21 @@ JobDemand Extractions::demand_of(const BrickedVolume& samples, const Reconstruct
                                  Priority priority) const {
   return {.priority = priority,
           .memory_bytes = memory_to_reserve(estimate_reconstruction(samples, options)),
-          .tenant = tenant_};
+          .tenant = tenant_,
+          .what = "extraction that is not kept"};
 }
 
 /// Of what cannot be opened only the priority is known: its job will fail at once.
 JobDemand Extractions::demand_of(const Extraction::Identity& identity, Priority priority) {
   auto options = parse_request(identity.request);
   const auto volume = volumes_.open(identity.volume);
-  if (!options || !volume) return {.priority = priority, .tenant = tenant_};
-  options->threads = threads_;
-  return demand_of(*(*volume)->samples, *options, priority);
+  JobDemand demand{.priority = priority, .tenant = tenant_};
+  if (options && volume) {
+    options->threads = threads_;
+    demand = demand_of(*(*volume)->samples, *options, priority);
+  }
+  demand.what = "extraction " + identity.id;
+  return demand;
 }
 
 Result<std::shared_ptr<Extraction>> Extractions::create(const std::string& volume, const Json& request,

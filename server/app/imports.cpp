@@ -84,7 +84,7 @@ Result<Json> Imports::begin(std::shared_ptr<const StagedFile> file, UploadOption
                        {"volume", nullptr},
                        {"process", store_.process_name()}};
   if (auto done = write(id, record); !done) return std::move(done).error();
-  auto job = queue_.submit(JobDemand{.memory_bytes = memory_bytes},
+  auto job = queue_.submit(JobDemand{.memory_bytes = memory_bytes, .tenant = volumes_.tenant(), .what = "import " + id},
                            [imports = *this, id, record, file = std::move(file), options](Job& running) {
                              return imports.run(id, record, *file, options, running);
                            });

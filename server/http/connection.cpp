@@ -170,7 +170,7 @@ void Connection::begin_upload(Head head) {
   if (head.content_length.value_or(0) > owner_.limits().upload_bytes) {
     return refuse({413, "the body is larger than this server takes"});
   }
-  if (!owner_.takes_uploads()) return refuse({503, "too many uploads are running"});
+  if (!owner_.takes_uploads_of(peer_)) return refuse({503, "too many uploads are running"});
   closes_ = true;
   state_ = State::starting_upload;
   deadline_ = Clock::now() + owner_.limits().head_deadline;

@@ -32,7 +32,7 @@ class ConnectionOwner {
   /// Runs the handler elsewhere; the answer comes by answer(). False = too much to do already.
   virtual bool handle(Connection& connection, Router::Resolved resolved) = 0;
   /// Whether upload() would find a thread just now.
-  virtual bool takes_uploads() const = 0;
+  virtual bool takes_uploads_of(const std::string& peer) const = 0;
   /// The same with a body that is still to be read; until the answer comes the socket belongs to the upload's thread.
   virtual bool upload(Connection& connection, Head head, Router::Resolved resolved, std::string already) = 0;
   /// The rest of a request that was suspended, on a handler's thread.

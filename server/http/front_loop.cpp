@@ -233,7 +233,7 @@ bool FrontLoop::upload(Connection& connection, Head head, Router::Resolved resol
   };
   // The thread owns the socket from its first moment on.
   poller_.forget(connection.socket());
-  return uploads_.start(connection.id(), work);
+  return uploads_.start(connection.id(), connection.peer(), work);
 }
 
 void FrontLoop::resume(Connection& connection, std::unique_ptr<Suspended> suspended) {

@@ -40,7 +40,7 @@ class FrontLoop final : private ConnectionOwner {
   const Dispatcher& dispatcher() const override { return dispatcher_; }
   bool is_draining() const override { return is_draining_; }
   bool handle(Connection& connection, Router::Resolved resolved) override;
-  bool takes_uploads() const override { return uploads_.has_room(); }
+  bool takes_uploads_of(const std::string& peer) const override { return uploads_.has_room(peer); }
   bool upload(Connection& connection, Head head, Router::Resolved resolved, std::string already) override;
   void resume(Connection& connection, std::unique_ptr<Suspended> suspended) override;
   std::function<void()> bell_of(const Connection& connection) override;

@@ -174,18 +174,20 @@ void JobQueue::run_worker(const std::stop_token& stop, Lane lane) {
   Item item;
   while (take(stop, lane, item)) {
     run(item);
-    note_end(item);
+    const auto took = note_end(item);
+    if (options_.after_job) options_.after_job({item.demand, item.job->status(), took});
     item = {};
-    if (options_.after_job) options_.after_job();
   }
 }
 
-void JobQueue::note_end(const Item& item) {
+std::chrono::duration<double> JobQueue::note_end(const Item& item) {
   const JobState state = item.job->status().state;
+  std::chrono::duration<double> took{0};
   {
     const std::lock_guard lock(mutex_);
-    if (const auto ended = running_.extract(item.job); ended && state != JobState::cancelled) {
-      const std::chrono::duration<double> took = Clock::now() - ended.mapped().started;
+    const auto ended = running_.extract(item.job);
+    if (ended) took = Clock::now() - ended.mapped().started;
+    if (ended && state != JobState::cancelled) {
       mean_run_ = has_run_ ? mean_run_ + (took - mean_run_) * kNewestShare : took;
       has_run_ = true;
     }
@@ -194,6 +196,7 @@ void JobQueue::note_end(const Item& item) {
     if (is_idle()) became_idle_.notify_all();
   }
   has_work_.notify_all();  // a batch job may start now
+  return took;
 }
 
 /// Waits for the next job; false when the thread shall end.

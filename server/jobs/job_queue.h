@@ -28,9 +28,17 @@ const char* name_of(Priority priority);
 /// What a job asks of its queue.
 struct JobDemand {
   Priority priority = Priority::interactive;
-  std::uint64_t memory_bytes = 0;                                                ///< reserved while it runs
-  std::string tenant = {};                                                       ///< in whose name it waits
+  std::uint64_t memory_bytes = 0;  ///< reserved while it runs
+  std::string tenant = {};         ///< in whose name it waits
+  std::string what = {};           ///< for those who watch: "extraction 12ab..."
   std::optional<std::chrono::steady_clock::time_point> deadline = std::nullopt;  ///< it fails when not done by then
+};
+
+/// How a job ended.
+struct JobEnd {
+  const JobDemand& demand;
+  JobStatus status;
+  std::chrono::duration<double> took;  ///< zero if it never ran
 };
 
 struct JobQueueOptions {
@@ -41,7 +49,8 @@ struct JobQueueOptions {
   std::size_t tenant_capacity = 0;       ///< of these in the name of one tenant; 0 = all
   std::chrono::milliseconds longest{0};  ///< that a job may take from its start; 0 = any time
   MemoryBudget* budget = nullptr;        ///< what jobs reserve from; null = memory is not counted. Outlives the queue.
-  std::function<void()> after_job = {};  ///< called by the worker whose job has ended; must not throw
+  /// Called by the worker whose job has ended; must not throw.
+  std::function<void(const JobEnd&)> after_job = {};
   /// How long a job lets those of higher priority go first, by priority.
   std::array<std::chrono::milliseconds, kPriorities> patience = {std::chrono::seconds(0), std::chrono::seconds(5),
                                                                  std::chrono::seconds(60)};
@@ -118,7 +127,7 @@ class JobQueue {
   bool start_next(Lane lane, Item& item);
   bool may_start(const Item& item, Lane lane) const;
   Result<void> check(const JobDemand& demand) const;
-  void note_end(const Item& item);
+  std::chrono::duration<double> note_end(const Item& item);
   void cancel_all();
   std::vector<Item> take_cancelled();
   std::size_t waiting_of(const std::string& tenant) const;

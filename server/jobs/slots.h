@@ -10,7 +10,7 @@ namespace geosis::server {
 /// Places of which only so many can be taken at one time. Any thread may call any member. Outlives the places.
 class Slots {
  public:
-  explicit Slots(std::size_t most) : free_(most) {}
+  explicit Slots(std::size_t most) : most_(most), free_(most) {}
   Slots(const Slots&) = delete;
   Slots& operator=(const Slots&) = delete;
 
@@ -34,8 +34,10 @@ class Slots {
     return std::nullopt;
   }
   bool has_room() const { return free_ > 0; }
+  std::size_t most() const { return most_; }
 
  private:
+  const std::size_t most_;
   std::atomic<std::size_t> free_;
 };
 

@@ -68,7 +68,20 @@ Result<std::uint64_t> memory_to_use(const ServeOptions& options) {
                                                 std::to_string(kLeastMemory) + " bytes are needed"};
 }
 
-JobQueueOptions queue_options(const ServeOptions& options, MemoryBudget& memory, HeapTrimmer& trim) {
+/// What was computed has its own line; this is for what was not.
+void log_end(Log& log, const JobEnd& end) {
+  if (end.status.state == JobState::done) return;
+  std::vector<LogField> fields = {
+      {"what", end.demand.what}, {"tenant", end.demand.tenant}, {"seconds", end.took.count()}};
+  if (end.status.error) {
+    fields.push_back({"code", name_of(end.status.error->code)});
+    fields.push_back({"problem", end.status.error->message});
+  }
+  const bool has_failed = end.status.state == JobState::failed;
+  log.write(has_failed ? LogLevel::warning : LogLevel::info, has_failed ? "job failed" : "job cancelled", fields);
+}
+
+JobQueueOptions queue_options(const ServeOptions& options, MemoryBudget& memory, HeapTrimmer& trim, Log& log) {
   return {.workers = options.workers,
           .preview_workers = 1,
           .most_batch = std::max(options.workers - 1, 1),
@@ -76,7 +89,10 @@ JobQueueOptions queue_options(const ServeOptions& options, MemoryBudget& memory,
           .tenant_capacity = static_cast<std::size_t>(options.queued_per_tenant),
           .longest = options.longest,
           .budget = &memory,
-          .after_job = [&trim] { trim(); }};
+          .after_job = [&trim, &log](const JobEnd& end) {
+            log_end(log, end);
+            trim();
+          }};
 }
 
 std::string host_of(const std::string& listen) {
@@ -129,7 +145,7 @@ Result<void> serve(const ServeOptions& options) {
   if (!memory_bytes) return memory_bytes.error();
   MemoryBudget memory(*memory_bytes);
   HeapTrimmer trim;
-  JobQueue queue(queue_options(options, memory, trim));
+  JobQueue queue(queue_options(options, memory, trim, log));
   const std::vector<std::string> names = *keys ? (*keys)->tenants() : std::vector<std::string>{kTenant};
   Tenants tenants(store, queue, memory, options.threads, names);
   tenants.on_events(counted_events(metrics, log));

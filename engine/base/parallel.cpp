@@ -1,6 +1,11 @@
 #include "engine/base/parallel.h"
 
-#include <algorithm>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -49,6 +54,39 @@ tbb::task_arena::priority arena_priority(LoopPriority priority) {
   return tbb::task_arena::priority::normal;
 }
 
+/// Arenas that loops have used and that wait for the next. TBB destroys an arena only when its workers have come and
+/// gone: of loops that end before any worker comes, on a machine that is busy, it keeps all, some 7 KB each.
+class IdleArenas {
+ public:
+  /// Never destroyed: threads may still run loops when the process already ends.
+  static IdleArenas& of_process() {
+    static auto& arenas = *new IdleArenas;
+    return arenas;
+  }
+
+  std::unique_ptr<tbb::task_arena> take(int threads, LoopPriority priority) {
+    {
+      const std::lock_guard lock(mutex_);
+      auto& arenas = arenas_[{threads, priority}];
+      if (!arenas.empty()) {
+        auto arena = std::move(arenas.back());
+        arenas.pop_back();
+        return arena;
+      }
+    }
+    return std::make_unique<tbb::task_arena>(threads, 1, arena_priority(priority));
+  }
+
+  void give_back(int threads, LoopPriority priority, std::unique_ptr<tbb::task_arena> arena) {
+    const std::lock_guard lock(mutex_);
+    arenas_[{threads, priority}].push_back(std::move(arena));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::pair<int, LoopPriority>, std::vector<std::unique_ptr<tbb::task_arena>>> arenas_;
+};
+
 }  // namespace
 
 LoopPriorityScope::LoopPriorityScope(LoopPriority priority) : before_(current_priority) {
@@ -69,13 +107,14 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
     return;
   }
   // TBB gives no more threads than processors unless it is told to; more are asked for to test that results agree.
-  const tbb::global_control allow(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<std::size_t>(std::max(threads, default_threads())));
+  std::optional<tbb::global_control> allow;
+  if (threads > default_threads())
+    allow.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   const LoopPriority priority = current_priority;
-  tbb::task_arena arena(threads, 1, arena_priority(priority));
+  auto arena = IdleArenas::of_process().take(threads, priority);
   Handover begin, end;
   begin.give();
-  arena.execute([&] {
+  arena->execute([&] {
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, count, 1),
         [&](const tbb::blocked_range<std::size_t>& range) {
@@ -87,6 +126,7 @@ void parallel_for(std::size_t count, int threads, const std::function<void(std::
         tbb::simple_partitioner());
   });
   end.take();
+  IdleArenas::of_process().give_back(threads, priority, std::move(arena));
 }
 
 }  // namespace geosis

@@ -36,7 +36,8 @@ Result<std::shared_ptr<Job>> begin_histogram(const Services& services, const std
     *counted = *std::move(result);
     return {};
   };
-  return services.queue.submit(JobDemand{.tenant = services.volumes.tenant(), .what = "histogram of volume " + id}, count);
+  return services.queue.submit(JobDemand{.tenant = services.volumes.tenant(), .what = "histogram of volume " + id},
+                               count);
 }
 
 }  // namespace geosis::server

@@ -13,6 +13,7 @@ namespace geosis {
 namespace {
 
 constexpr float kCostOfAnyLink = 0.02f;
+constexpr std::size_t kTracesBetweenLooks = 256;  // whether it is cancelled
 
 /// A trace's neighbour, and the link between them.
 struct Neighbour {
@@ -117,7 +118,8 @@ PaintOrder order_traces(const DipField& field, int threads) {
   return order;
 }
 
-void paint_layers(const DipField& field, const PaintOrder& order, LayerDepths& depths) {
+Result<void> paint_layers(const DipField& field, const PaintOrder& order, const Progress& progress,
+                          LayerDepths& depths) {
   const std::int32_t layers = depths.layers;
   depths.reference = static_cast<std::size_t>(order.trace.front());
   depths.depth.assign(depths.trace_count() * static_cast<std::size_t>(layers), 0.0f);
@@ -126,6 +128,9 @@ void paint_layers(const DipField& field, const PaintOrder& order, LayerDepths& d
   std::vector<std::uint8_t> is_done(depths.trace_count());
   is_done[depths.reference] = 1;
   for (std::size_t n = 1; n < order.trace.size(); ++n) {
+    if (n % kTracesBetweenLooks == 0 && progress.cancelled()) {
+      return Error{ErrorCode::cancelled, "laying the structural grid was cancelled"};
+    }
     const auto trace = static_cast<std::size_t>(order.trace[n]);
     float* here = depths.trace(trace);
     float weights = 0;
@@ -140,6 +145,7 @@ void paint_layers(const DipField& field, const PaintOrder& order, LayerDepths& d
     make_rising(here, layers, depths.spacing);
     is_done[trace] = 1;
   }
+  return {};
 }
 
 }  // namespace geosis

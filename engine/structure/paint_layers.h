@@ -5,6 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "engine/base/progress.h"
+#include "engine/base/result.h"
 #include "engine/structure/dip_field.h"
 #include "engine/structure/layer_depths.h"
 
@@ -25,7 +27,9 @@ PaintOrder order_traces(const DipField& field, int threads);
 /// neighbours that have them say, weighted by 1 / cost squared.
 ///
 /// depths   shape, layers, spacing and first set; the rest is written.
+/// errors   cancelled.
 /// cost     about 30 ns a node.
-void paint_layers(const DipField& field, const PaintOrder& order, LayerDepths& depths);
+Result<void> paint_layers(const DipField& field, const PaintOrder& order, const Progress& progress,
+                          LayerDepths& depths);
 
 }  // namespace geosis

@@ -19,6 +19,8 @@ namespace {
 const char* const kStage = "structure";
 constexpr std::int64_t kFewNodes = 2'000'000;  // up to which solving takes a second anyway
 constexpr std::int32_t kWidestSpacing = 16;
+constexpr double kSteepShare = 0.25;  // of the period: beyond it the tensor may take the wrong peak
+constexpr double kFewSteep = 0.05;    // of the dips, for noise has steep ones too: with more, traces are warped
 
 /// Fractions of the whole for one phase of it.
 std::function<void(double)> phase(Progress& progress, double from, double to) {
@@ -35,16 +37,16 @@ struct Margins {
 };
 
 /// Where the reference trace's first and last sample lie on the others says how many.
-Margins find_margins(const DipField& field, const PaintOrder& order) {
+Result<Margins> find_margins(const DipField& field, const PaintOrder& order, const Progress& progress) {
   LayerDepths ends{.shape = field.shape(), .layers = 2, .spacing = std::max(field.shape().samples - 1, 1)};
-  paint_layers(field, order, ends);
+  if (auto painted = paint_layers(field, order, progress, ends); !painted) return std::move(painted).error();
   float highest = 0, lowest = static_cast<float>(ends.spacing);
   for (std::size_t t = 0; t < ends.trace_count(); ++t) {
     highest = std::max(highest, ends.trace(t)[0]);
     lowest = std::min(lowest, ends.trace(t)[1]);
   }
-  return {static_cast<std::int32_t>(std::ceil(highest)),
-          static_cast<std::int32_t>(std::ceil(static_cast<float>(ends.spacing) - lowest))};
+  return Margins{static_cast<std::int32_t>(std::ceil(highest)),
+                 static_cast<std::int32_t>(std::ceil(static_cast<float>(ends.spacing) - lowest))};
 }
 
 std::int32_t most_layers(GridShape shape, const StructureOptions& options) {
@@ -62,18 +64,20 @@ std::int32_t choose_spacing(GridShape shape, std::int64_t layers, const Structur
 }
 
 /// Layers to be painted and polished, before they have depths.
-Result<LayerDepths> plan_layers(const DipField& field, const PaintOrder& order, const StructureOptions& options) {
+Result<LayerDepths> plan_layers(const DipField& field, const PaintOrder& order, const StructureOptions& options,
+                                const Progress& progress) {
   const GridShape shape = field.shape();
-  const Margins margins = find_margins(field, order);
-  const std::int64_t layers = std::int64_t{margins.above} + shape.samples + margins.below;
+  const auto margins = find_margins(field, order, progress);
+  if (!margins) return margins.error();
+  const std::int64_t layers = std::int64_t{margins->above} + shape.samples + margins->below;
   if (layers > most_layers(shape, options)) {
     return Error{ErrorCode::limit_exceeded, "the structural grid needs at least " + std::to_string(layers) +
                                                 " layers for " + std::to_string(shape.samples) + " samples; at most " +
                                                 std::to_string(most_layers(shape, options))};
   }
   LayerDepths depths{.shape = shape, .spacing = choose_spacing(shape, layers, options)};
-  depths.first = -(margins.above + depths.spacing - 1) / depths.spacing * depths.spacing;
-  depths.layers = static_cast<std::int32_t>((layers - margins.above - depths.first - 2) / depths.spacing + 2);
+  depths.first = -(margins->above + depths.spacing - 1) / depths.spacing * depths.spacing;
+  depths.layers = static_cast<std::int32_t>((layers - margins->above - depths.first - 2) / depths.spacing + 2);
   return depths;
 }
 
@@ -143,18 +147,24 @@ Result<MeasuredDips> measure_dips(const DipSamples& input, int threads, Progress
   auto scan = scan_vertically(measured_of(input), threads, progress);
   if (!scan) return std::move(scan).error();
   measured.scan = *scan;
-  auto field = scan_dips(input, *scan, threads, progress, phase(progress, 0, 0.3));
+  auto field = scan_dips(input, *scan, threads, progress, phase(progress, 0, 0.1));
   if (!field) return std::move(field).error();
   measured.field = *std::move(field);
-  measured.report = {.period = scan->period, .dips = dip_quantiles(measured.field)};
+  measured.report.period = scan->period;
+  if (share_steeper_than(measured.field, kSteepShare * scan->period) > kFewSteep) {
+    auto warped = warp_dips(measured_of(input), *scan, threads, progress, phase(progress, 0.1, 0.3), measured.field);
+    if (!warped) return std::move(warped).error();
+    measured.report.warped = true;
+  }
+  measured.report.dips = dip_quantiles(measured.field);
   return measured;
 }
 
 Result<LayerDepths> lay_layers(const DipField& field, const StructureOptions& options, Progress& progress) {
   const PaintOrder order = order_traces(field, options.threads);
-  auto depths = plan_layers(field, order, options);
+  auto depths = plan_layers(field, order, options, progress);
   if (!depths) return depths;
-  paint_layers(field, order, *depths);
+  if (auto painted = paint_layers(field, order, progress, *depths); !painted) return std::move(painted).error();
   auto polished = polish_layers(field, *depths, options.threads, progress, phase(progress, 0.55, 0.95));
   if (!polished) return std::move(polished).error();
   return depths;

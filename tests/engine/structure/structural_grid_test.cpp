@@ -1,6 +1,7 @@
 #include "engine/structure/structural_grid.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -103,8 +104,47 @@ TEST(StructuralGrid, FollowsReflectorsOfWhichTheTruthIsKnown) {
   }
 }
 
-TEST(StructuralGrid, IsTheSameForAnyNumberOfThreadsAndAnyScale) {
-  const test::LayeredTruth truth({.shape = {40, 37, 90}, .layering = test::Layering::steep});
+TEST(StructuralGrid, FollowsReflectorsBeyondHalfThePeriodATrace) {
+  for (const double dip : {-8.0, 6.0}) {
+    const test::LayeredTruth truth({.shape = {24, 24, 160}, .layering = test::Layering::plane, .dip = dip});
+    const auto field = truth.samples();
+    const auto volume = make_bricked_volume(field.shape, field.samples);
+    NoProgress progress;
+    auto measured = measure_dips({*volume}, 2, progress);
+    ASSERT_TRUE(measured);
+    EXPECT_TRUE(measured->report.warped);
+    EXPECT_NEAR(measured->report.dips[0].median, std::abs(dip), 0.05);
+    EXPECT_LT(test::dip_error(truth, measured->field), 0.4);
+    ASSERT_TRUE(scan_agreements(
+        *volume, measured->scan, 2, progress, [](double) {}, measured->field));
+    const auto layers = lay_layers(measured->field, {.threads = 2}, progress);
+    ASSERT_TRUE(layers);
+    EXPECT_LT(test::layer_errors(truth, *layers).rms, 0.5) << dip;
+    expect_whole(*grid_of(field, {.threads = 2}), field.shape);
+  }
+}
+
+TEST(StructuralGrid, WarpsAroundMissingTraces) {
+  const test::LayeredTruth truth({.shape = {24, 24, 120}, .layering = test::Layering::plane, .dip = 6});
+  auto field = truth.samples();
+  test::for_each_node(field.shape, [&](GridIndex n) {
+    if (n.i + n.j < 10 || (n.i == 12 && n.j == 12)) field.at(n) = kMissing;
+  });
+  const auto grid = grid_of(field, {.threads = 2});
+  ASSERT_TRUE(grid) << grid.error().message;
+  expect_whole(*grid, field.shape);
+  EXPECT_TRUE(grid->report.dips.warped);
+  EXPECT_NEAR(grid->report.dips.dips[0].median, 6, 0.1);
+}
+
+class StructuralGridOf : public testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(Dips, StructuralGridOf, testing::Values(0.0, 6.0));  // steep folds; a warped plane
+
+TEST_P(StructuralGridOf, OneFieldIsTheSameForAnyNumberOfThreadsAndAnyScale) {
+  const bool is_plane = GetParam() > 0;
+  const test::LayeredTruth truth({.shape = {is_plane ? 19 : 40, is_plane ? 17 : 37, 90},
+                                  .layering = is_plane ? test::Layering::plane : test::Layering::steep,
+                                  .dip = GetParam()});
   auto field = truth.samples();
   const auto one = grid_of(field, {.threads = 1});
   const auto three = grid_of(field, {.threads = 3});

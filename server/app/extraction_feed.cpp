@@ -1,5 +1,7 @@
 #include "server/app/extraction_feed.h"
 
+#include <utility>
+
 #include "server/app/problem.h"
 
 namespace geosis::server {
@@ -18,17 +20,18 @@ void ExtractionFeed::Bell::ring() {
   if (listener_) listener_();
 }
 
-void ExtractionFeed::Bell::clear() {
+bool ExtractionFeed::Bell::take() {
   const std::lock_guard lock(mutex_);
-  rung_ = false;
+  return std::exchange(rung_, false);
 }
 
 ExtractionFeed::ExtractionFeed(std::shared_ptr<Extraction> extraction)
     : extraction_(std::move(extraction)), subscription_(extraction_->subscribe([bell = bell_] { bell->ring(); })) {}
 
-Extraction::Snapshot ExtractionFeed::look() {
-  bell_->clear();  // before looking: what comes later rings again
-  return extraction_->snapshot();
+const Extraction::Snapshot& ExtractionFeed::look() {
+  const bool has_rung = bell_->take();  // before looking: what comes later rings again
+  if (has_rung || !seen_) seen_ = extraction_->snapshot();
+  return *seen_;
 }
 
 // ---- events
@@ -36,10 +39,10 @@ Extraction::Snapshot ExtractionFeed::look() {
 std::variant<ExtractionEvent, NothingYet, NoMore> EventFeed::next() {
   using Kind = ExtractionEvent::Kind;
   if (has_ended_) return NoMore{};
-  Extraction::Snapshot now = look();
+  const Extraction::Snapshot& now = look();
   if (told_ < now.levels.size()) {
     const std::uint64_t id = ++told_;
-    return ExtractionEvent{Kind::level, id, std::move(now.levels[id - 1])};
+    return ExtractionEvent{Kind::level, id, now.levels[id - 1]};
   }
   if (is_final(now.state)) {
     has_ended_ = true;
@@ -67,7 +70,7 @@ LevelFeed::~LevelFeed() {
 
 Result<LevelFeed::Piece> LevelFeed::next() {
   if (has_ended_) return Piece(NoMore{});
-  const Extraction::Snapshot now = look();
+  const Extraction::Snapshot& now = look();
   const auto is_left_out = [&](const Json& entry) {
     return options_.from_level && entry.at("level").get<int>() > *options_.from_level;
   };

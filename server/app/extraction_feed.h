@@ -28,25 +28,28 @@ class ExtractionFeed {
  protected:
   explicit ExtractionFeed(std::shared_ptr<Extraction> extraction);
   const Extraction& extraction() const { return *extraction_; }
-  /// The extraction as it is now; what changes later rings again.
-  Extraction::Snapshot look();
+  /// The extraction as it is now; what changes later rings again. A snapshot costs as much as its levels have parts: it
+  /// is taken again only after the bell has rung.
+  const Extraction::Snapshot& look();
 
  private:
   class Bell {
    public:
     void set(std::function<void()> listener);
     void ring();
-    void clear();
+    /// Whether it has rung since the last time.
+    bool take();
 
    private:
     std::mutex mutex_;
     std::function<void()> listener_;
-    bool rung_ = false;  ///< and nobody has looked since
+    bool rung_ = false;
   };
 
   const std::shared_ptr<Extraction> extraction_;
   const std::shared_ptr<Bell> bell_ = std::make_shared<Bell>();
   const Job::Subscription subscription_;
+  std::optional<Extraction::Snapshot> seen_;
 };
 
 /// One event: progress (no id), each level as it is ready (id 1, 2, ...), at last done or failed (the next id).

@@ -8,7 +8,7 @@
 namespace geosis::server::rpc {
 namespace {
 
-constexpr std::size_t kMostChunks = 2;
+constexpr std::size_t kMostHeld = 2 << 20;  // bytes
 constexpr std::chrono::milliseconds kLook{250};
 
 std::string hex_of(const std::string& bytes) {
@@ -42,11 +42,12 @@ bool ChunkInbox::put(std::string chunk) {
     broken_ = Error{ErrorCode::limit_exceeded, "the file is larger than the " + std::to_string(options_.most_bytes) +
                                                    " bytes that this server takes"};
   } else if (!chunk.empty()) {
+    held_ += chunk.size();
     chunks_.push_back(std::move(chunk));
   }
   changed_.notify_one();
   if (broken_) return false;
-  is_asking_owed_ = chunks_.size() >= kMostChunks;
+  is_asking_owed_ = held_ >= kMostHeld;
   return !is_asking_owed_;
 }
 
@@ -73,12 +74,12 @@ Result<std::size_t> ChunkInbox::read(std::span<std::byte> into) {
   const std::size_t count = std::min(into.size(), chunks_.front().size() - begin_);
   std::memcpy(into.data(), chunks_.front().data() + begin_, count);
   begin_ += count;
-  bool asks = false;
+  held_ -= count;
   if (begin_ == chunks_.front().size()) {
     chunks_.pop_front();
     begin_ = 0;
-    asks = std::exchange(is_asking_owed_, false);
   }
+  const bool asks = held_ < kMostHeld && std::exchange(is_asking_owed_, false);
   lock.unlock();
   if (asks) ask_for_more_();
   rate_.add(count, {});

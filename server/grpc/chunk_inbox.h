@@ -52,7 +52,7 @@ class ChunkInbox final : public CheckedBody {
   std::condition_variable changed_;
   std::deque<std::string> chunks_;
   std::size_t begin_ = 0;  ///< of the first chunk, what is not read yet
-  std::uint64_t received_ = 0;
+  std::uint64_t received_ = 0, held_ = 0;
   bool is_asking_owed_ = false, has_ended_ = false;
   std::string sha256_;
   std::optional<std::uint64_t> stated_bytes_;

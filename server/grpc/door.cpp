@@ -5,6 +5,7 @@
 #include <mutex>
 #include <utility>
 
+#include <google/protobuf/stubs/logging.h>
 #include <grpc/support/log.h>
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/health_check_service_interface.h>
@@ -71,6 +72,7 @@ void tell_to(std::function<void(const std::string&)> say) {
 void set_up_process() {
   static const bool is_done = [] {
     grpc::EnableDefaultHealthCheckService(true);
+    google::protobuf::SetLogHandler(nullptr);  // a client's bytes are no news for stderr
     grpc::reflection::InitProtoReflectionServerBuilderPlugin();
     return true;
   }();
@@ -83,6 +85,7 @@ void set_limits(grpc::ServerBuilder& builder, const DoorOptions& options) {
   builder.SetResourceQuota(grpc::ResourceQuota("geosis").Resize(kMemory).SetMaxThreads(kReflectionThreads));
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, options.streams_per_connection);
   builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE, kLargestMetadata);
+  builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, static_cast<int>(options.patience.count()));
   // A peer that is gone without a word is noticed; one that asks all the time is told to go.
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kMinute);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kMinute / 3);

@@ -14,28 +14,29 @@
 namespace geosis::server::rpc {
 namespace {
 
-using Streaming = StreamingCall<grpc::ServerBidiReactor<v1::ExtractRequest, v1::LodChunk>, v1::LodChunk>;
+using Streaming = StreamingCall<grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>, grpc::ByteBuffer>;
 
 /// First the file comes in, on a thread of its own, then the levels go out.
 class ExtractCall final : public Streaming {
  public:
   ExtractCall(CallRoom& room, grpc::CallbackServerContext& context)
       : Streaming(room, context, "geosis.v1.ExtractionService/Extract", Access::write),
-        receiver_(room, [this] { StartRead(&message_); }) {}
+        receiver_(room, [this] { StartRead(&bytes_); }) {}
 
   void OnReadDone(bool ok) override {
     using Next = FileReceiver<v1::ExtractRequest>::Next;
     call().client_came();
-    if (ok) call().count_in(message_.ByteSizeLong());
+    if (ok) call().count_in(bytes_.Length());
+    if (ok && !parse(bytes_, message_)) message_.Clear();  // which is neither options nor a chunk
     switch (receiver_.take(message_, ok)) {
       case Next::read_more:
-        return receiver_.has_started() ? StartRead(&message_) : read();
+        return receiver_.has_started() ? StartRead(&bytes_) : read();
       case Next::wait:
         return;
       case Next::start: {
         const auto self = std::static_pointer_cast<ExtractCall>(shared_from_this());
         if (!call().room().uploads.start([self] { self->run(); })) return set_end(call().failed(too_busy()));
-        if (receiver_.reads_on()) StartRead(&message_);
+        if (receiver_.reads_on()) StartRead(&bytes_);
         return;
       }
       case Next::refuse:
@@ -54,7 +55,7 @@ class ExtractCall final : public Streaming {
   }
   void read() {
     call().expect_client(call().room().patience);
-    StartRead(&message_);
+    StartRead(&bytes_);
   }
 
   /// On the file's own thread.
@@ -83,6 +84,7 @@ class ExtractCall final : public Streaming {
     return extract_spooled(services, **file, receiver_.file().upload, *request, progress, candidates);
   }
 
+  grpc::ByteBuffer bytes_;
   v1::ExtractRequest message_;
   FileReceiver<v1::ExtractRequest> receiver_;
   std::atomic<bool> has_left_{false};
@@ -90,8 +92,8 @@ class ExtractCall final : public Streaming {
 
 }  // namespace
 
-grpc::ServerBidiReactor<v1::ExtractRequest, v1::LodChunk>* start_extract(CallRoom& room,
-                                                                         grpc::CallbackServerContext* context) {
+grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* start_extract(CallRoom& room,
+                                                                           grpc::CallbackServerContext* context) {
   const auto call = std::make_shared<ExtractCall>(room, *context);
   call->start(call);
   return call.get();

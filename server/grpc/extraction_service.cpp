@@ -96,21 +96,23 @@ grpc::ServerUnaryReactor* ExtractionServiceDoor::CancelExtraction(grpc::Callback
                      {.answer = cancel, .lane = HandlerPool::Lane::writing});
 }
 
-grpc::ServerWriteReactor<v1::LodChunk>* ExtractionServiceDoor::StreamLods(grpc::CallbackServerContext* context,
-                                                                          const v1::StreamLodsRequest* request) {
-  using Source = MessageSource<v1::LodChunk>;
+grpc::ServerWriteReactor<grpc::ByteBuffer>* ExtractionServiceDoor::StreamLods(grpc::CallbackServerContext* context,
+                                                                              const grpc::ByteBuffer* bytes) {
+  using Source = MessageSource<grpc::ByteBuffer>;
   const auto open = [=](const Services& services) -> Result<std::unique_ptr<Source>> {
+    v1::StreamLodsRequest request;
+    if (!parse(*bytes, request)) return Error{ErrorCode::invalid_argument, "the request is no StreamLodsRequest"};
     LevelFeed::Options options;
-    if (request->has_from_level()) options.from_level = request->from_level();
+    if (request.has_from_level()) options.from_level = request.from_level();
     if (options.from_level.value_or(0) < 0) {
       return Error{ErrorCode::invalid_argument,
                    "/from_level: " + std::to_string(*options.from_level) + "; expected a level, from 0 on"};
     }
-    auto extraction = services.extractions.find(request->id());
+    auto extraction = services.extractions.find(request.id());
     if (!extraction) return std::move(extraction).error();
     return lod_source(*std::move(extraction), std::move(options));
   };
-  return start_stream<v1::LodChunk>(room_, context, "geosis.v1.ExtractionService/StreamLods", open);
+  return start_stream<grpc::ByteBuffer>(room_, context, "geosis.v1.ExtractionService/StreamLods", open);
 }
 
 grpc::ServerUnaryReactor* ExtractionServiceDoor::ListBodies(grpc::CallbackServerContext* context,
@@ -135,7 +137,7 @@ grpc::ServerUnaryReactor* ExtractionServiceDoor::ListBodies(grpc::CallbackServer
                      {.begin = begin, .answer = list});
 }
 
-grpc::ServerBidiReactor<v1::ExtractRequest, v1::LodChunk>* ExtractionServiceDoor::Extract(
+grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* ExtractionServiceDoor::Extract(
     grpc::CallbackServerContext* context) {
   return start_extract(room_, context);
 }

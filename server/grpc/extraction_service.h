@@ -6,8 +6,18 @@
 
 namespace geosis::server::rpc {
 
+using AllExtractionCalls = v1::ExtractionService;
+/// All by callbacks; those that stream levels raw.
+using ExtractionCalls =
+    AllExtractionCalls::WithCallbackMethod_CreateExtraction<AllExtractionCalls::WithCallbackMethod_GetExtraction<
+        AllExtractionCalls::WithCallbackMethod_WatchExtraction<AllExtractionCalls::WithCallbackMethod_CancelExtraction<
+            AllExtractionCalls::WithRawCallbackMethod_StreamLods<AllExtractionCalls::WithCallbackMethod_ListBodies<
+                AllExtractionCalls::WithRawCallbackMethod_Extract<AllExtractionCalls::Service>>>>>>>;
+
 /// geosis.v1.ExtractionService over the use cases. Nothing of a call is done on gRPC's threads.
-class ExtractionServiceDoor final : public v1::ExtractionService::CallbackService {
+///
+/// Calls that stream levels write bytes as they are on the wire: lod_source() says why.
+class ExtractionServiceDoor final : public ExtractionCalls {
  public:
   explicit ExtractionServiceDoor(CallRoom& room) : room_(room) {}
 
@@ -21,11 +31,11 @@ class ExtractionServiceDoor final : public v1::ExtractionService::CallbackServic
   grpc::ServerUnaryReactor* CancelExtraction(grpc::CallbackServerContext* context,
                                              const v1::CancelExtractionRequest* request,
                                              google::protobuf::Empty* response) override;
-  grpc::ServerWriteReactor<v1::LodChunk>* StreamLods(grpc::CallbackServerContext* context,
-                                                     const v1::StreamLodsRequest* request) override;
+  grpc::ServerWriteReactor<grpc::ByteBuffer>* StreamLods(grpc::CallbackServerContext* context,
+                                                         const grpc::ByteBuffer* request) override;
   grpc::ServerUnaryReactor* ListBodies(grpc::CallbackServerContext* context, const v1::ListBodiesRequest* request,
                                        v1::ListBodiesResponse* response) override;
-  grpc::ServerBidiReactor<v1::ExtractRequest, v1::LodChunk>* Extract(grpc::CallbackServerContext* context) override;
+  grpc::ServerBidiReactor<grpc::ByteBuffer, grpc::ByteBuffer>* Extract(grpc::CallbackServerContext* context) override;
 
  private:
   CallRoom& room_;

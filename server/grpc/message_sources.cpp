@@ -2,8 +2,15 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
 #include <utility>
 #include <variant>
+#include <vector>
+
+#include <google/protobuf/io/coded_stream.h>
+#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
+#include <grpcpp/impl/codegen/proto_utils.h>
+#include <grpcpp/support/slice.h>
 
 #include "server/grpc/message_codec.h"
 
@@ -54,51 +61,94 @@ class EmptySource final : public MessageSource<Message> {
   void on_ready(std::function<void()>) override {}
 };
 
-class LodSource final : public MessageSource<v1::LodChunk> {
+using Bytes = std::vector<std::byte>;
+using SharedBytes = std::shared_ptr<const Bytes>;
+
+/// A piece of bytes that live as long as gRPC has it.
+grpc::Slice slice_of(const SharedBytes& bytes, std::size_t first, std::size_t count) {
+  const auto release = [](void* held) { delete static_cast<SharedBytes*>(held); };
+  return {const_cast<std::byte*>(bytes->data() + first), count, release, new SharedBytes(bytes)};  // gRPC only reads
+}
+
+/// The start of a field that holds so many bytes.
+void add_field(std::string& text, int number, std::size_t bytes) {
+  google::protobuf::io::StringOutputStream stream(&text);
+  google::protobuf::io::CodedOutputStream out(&stream);
+  out.WriteTag(static_cast<std::uint32_t>(number << 3 | 2));
+  out.WriteVarint64(bytes);
+}
+
+/// LodChunk{part = chunk} whose data, the last field on the wire, are these. chunk   without data.
+grpc::ByteBuffer wire_chunk(const v1::PartChunk& chunk, grpc::Slice data) {
+  std::string fields = chunk.SerializeAsString();
+  add_field(fields, v1::PartChunk::kDataFieldNumber, data.size());
+  std::string head;
+  add_field(head, v1::LodChunk::kPartFieldNumber, fields.size() + data.size());
+  const grpc::Slice slices[] = {grpc::Slice(head + fields), std::move(data)};
+  return {slices, 2};
+}
+
+class LodSource final : public MessageSource<grpc::ByteBuffer> {
  public:
   LodSource(std::shared_ptr<Extraction> extraction, LevelFeed::Options options)
       : feed_(std::move(extraction), std::move(options)) {}
   void on_ready(std::function<void()> bell) override { feed_.on_ready(std::move(bell)); }
 
-  Result<State> next(v1::LodChunk& message) override {
-    if (sent_ == part_.bytes.size()) {
+  Result<State> next(grpc::ByteBuffer& message) override {
+    if (!bytes_) {
       auto next = feed_.next();
       if (!next) return std::move(next).error();
       if (std::holds_alternative<NothingYet>(*next)) return State::nothing_yet;
       if (std::holds_alternative<NoMore>(*next)) return State::end;
       if (const auto* manifest = std::get_if<Json>(&*next)) {
-        message.Clear();
-        set_message(*message.mutable_manifest(), *manifest);
+        message = wire_manifest(*manifest);
         return State::message;
       }
-      part_ = std::get<LevelPart>(*std::move(next));
-      sent_ = 0;
+      begin(std::get<LevelPart>(*std::move(next)));
     }
-    write_chunk(*message.mutable_part());
+    message = next_chunk();
     return State::message;
   }
 
  private:
-  void write_chunk(v1::PartChunk& chunk) {
-    const std::size_t count = std::min(kChunk, part_.bytes.size() - sent_);
-    chunk.set_level(part_.level);
-    chunk.set_part(part_.part);
-    chunk.set_parts(part_.parts);
-    chunk.set_preview(part_.is_preview);
-    chunk.set_bytes(part_.bytes.size());
-    chunk.set_data(part_.bytes.data() + sent_, count);
+  static grpc::ByteBuffer wire_manifest(const Json& manifest) {
+    v1::LodChunk chunk;
+    set_message(*chunk.mutable_manifest(), manifest);
+    const grpc::Slice bytes(chunk.SerializeAsString());
+    return {&bytes, 1};
+  }
+
+  void begin(LevelPart part) {
+    chunk_.set_level(part.level);
+    chunk_.set_part(part.part);
+    chunk_.set_parts(part.parts);
+    chunk_.set_preview(part.is_preview);
+    chunk_.set_bytes(part.bytes.size());
+    bytes_ = std::make_shared<const Bytes>(std::move(part.bytes));
+    sent_ = 0;
+  }
+
+  grpc::ByteBuffer next_chunk() {
+    const std::size_t first = sent_, count = std::min(kChunk, bytes_->size() - first);
     sent_ += count;
-    chunk.set_is_last(sent_ == part_.bytes.size());
-    if (chunk.is_last()) part_ = {};
-    if (chunk.is_last()) sent_ = 0;
+    chunk_.set_is_last(sent_ == bytes_->size());
+    auto message = wire_chunk(chunk_, slice_of(bytes_, first, count));
+    if (chunk_.is_last()) bytes_.reset();
+    return message;
   }
 
   LevelFeed feed_;
-  LevelPart part_;  // what is being sent
+  v1::PartChunk chunk_;  // of the part that is being sent, without data
+  SharedBytes bytes_;    // null: the next part is not there yet
   std::size_t sent_ = 0;
 };
 
 }  // namespace
+
+bool parse(const grpc::ByteBuffer& bytes, google::protobuf::Message& message) {
+  grpc::ByteBuffer read = bytes;  // which is emptied; the bytes themselves are shared
+  return grpc::SerializationTraits<google::protobuf::Message>::Deserialize(&read, &message).ok();
+}
 
 std::unique_ptr<MessageSource<v1::ExtractionEvent>> event_source(std::shared_ptr<Extraction> extraction,
                                                                  std::uint64_t after) {
@@ -106,8 +156,8 @@ std::unique_ptr<MessageSource<v1::ExtractionEvent>> event_source(std::shared_ptr
   return std::make_unique<EventSource>(std::move(extraction), after);
 }
 
-std::unique_ptr<MessageSource<v1::LodChunk>> lod_source(std::shared_ptr<Extraction> extraction,
-                                                        LevelFeed::Options options) {
+std::unique_ptr<MessageSource<grpc::ByteBuffer>> lod_source(std::shared_ptr<Extraction> extraction,
+                                                            LevelFeed::Options options) {
   return std::make_unique<LodSource>(std::move(extraction), std::move(options));
 }
 

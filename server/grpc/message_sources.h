@@ -6,6 +6,7 @@
 #include <optional>
 
 #include <geosis/v1/extraction.pb.h>
+#include <grpcpp/support/byte_buffer.h>
 
 #include "engine/base/result.h"
 #include "server/app/extraction_feed.h"
@@ -25,12 +26,25 @@ class MessageSource {
   virtual void on_ready(std::function<void()> bell) = 0;
 };
 
+/// False: the bytes are none of these messages.
+bool parse(const grpc::ByteBuffer& bytes, google::protobuf::Message& message);
+
+/// Of a message on the wire.
+inline std::size_t wire_bytes(const google::protobuf::Message& message) {
+  return message.ByteSizeLong();
+}
+inline std::size_t wire_bytes(const grpc::ByteBuffer& message) {
+  return message.Length();
+}
+
 /// after   id of the last event that the reader knows; after the very last one there is nothing to say.
 std::unique_ptr<MessageSource<v1::ExtractionEvent>> event_source(std::shared_ptr<Extraction> extraction,
                                                                  std::uint64_t after);
 
-/// Parts in chunks of 256 KiB, the manifest last. Destroyed before its end, `options.abandoned` is called.
-std::unique_ptr<MessageSource<v1::LodChunk>> lod_source(std::shared_ptr<Extraction> extraction,
-                                                        LevelFeed::Options options);
+/// LodChunk messages as they are on the wire: parts in chunks of 256 KiB, the manifest last. The bytes of a part are
+/// sent from where they are: a LodChunk object would copy them twice. Destroyed before its end, `options.abandoned` is
+/// called.
+std::unique_ptr<MessageSource<grpc::ByteBuffer>> lod_source(std::shared_ptr<Extraction> extraction,
+                                                            LevelFeed::Options options);
 
 }  // namespace geosis::server::rpc

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <array>
 #include <atomic>
+#include <cstddef>
 #include <functional>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <utility>
 
 #include <grpcpp/support/server_callback.h>
@@ -34,9 +38,16 @@ class StreamingCall : public Reactor, public Strand {
 
   void OnWriteDone(bool ok) override {
     call_.client_came();
-    has_broken_ = has_broken_ || !ok;
-    is_written_ = true;
-    poke();
+    bool is_running_low = false;
+    {
+      const std::lock_guard lock(writing_);
+      is_writing_ = false;
+      ++first_;
+      if (!ok) has_broken_ = true;
+      if (first_ < made_ && !has_broken_) write_first();
+      is_running_low = made_ - first_ <= kMost / 2;
+    }
+    if (is_running_low || !ok) poke();
   }
   void OnCancel() override {
     has_broken_ = true;
@@ -70,6 +81,8 @@ class StreamingCall : public Reactor, public Strand {
   }
 
  private:
+  static constexpr std::size_t kMost = 4;  ///< messages that are made and not taken
+
   void step() final {
     if (is_finished_) return;
     try {
@@ -80,15 +93,7 @@ class StreamingCall : public Reactor, public Strand {
   }
 
   void advance() {
-    if (is_writing_ && !is_written_) return;
-    is_writing_ = false;
-    if (has_broken_) {
-      call_.set_abandoned();
-      if (!source_ && has_opened_ && !has_arrived_) return;  // whoever makes the source learns of it and says the end
-      source_.reset();
-      arriving_.reset();
-      return finish(call_.failed({ErrorCode::cancelled, "the caller left"}));
-    }
+    if (has_broken_) return give_up();
     if (!has_opened_) {
       has_opened_ = true;
       auto opened = open_source();
@@ -99,7 +104,18 @@ class StreamingCall : public Reactor, public Strand {
       if (end_) return finish(*std::move(end_));
       watch(std::move(arriving_));
     }
-    if (source_) write_next();
+    while (source_ && make_next()) {
+    }
+    if (ending_ && is_all_written()) finish(*std::move(ending_));
+  }
+
+  void give_up() {
+    call_.set_abandoned();
+    if (is_writing()) return;  // its end will be told
+    if (!source_ && !ending_ && has_opened_ && !has_arrived_)
+      return;  // whoever makes the source learns of it, and says the end
+    arriving_.reset();
+    finish(call_.failed({ErrorCode::cancelled, "the caller left"}));
   }
 
   void watch(std::unique_ptr<Source> source) {
@@ -110,21 +126,41 @@ class StreamingCall : public Reactor, public Strand {
     });
   }
 
-  void write_next() {
-    const auto next = source_->next(message_);
-    if (!next) return finish(call_.failed(next.error()));
-    switch (*next) {
-      case Source::State::nothing_yet:
-        return;
-      case Source::State::end:
-        return finish(call_.ok());
-      case Source::State::message:
-        is_writing_ = true;
-        is_written_ = false;
-        call_.count_out(message_.ByteSizeLong());
-        call_.expect_client(call_.room().reader_patience);
-        this->StartWrite(&message_);
+  /// Makes a message if there is a place for it. False: not now, or never again.
+  bool make_next() {
+    {
+      const std::lock_guard lock(writing_);
+      if (made_ - first_ == kMost) return false;
     }
+    Message& message = messages_[made_ % kMost];  // nobody else looks at it
+    const auto next = source_->next(message);
+    if (next && *next == Source::State::nothing_yet) return false;
+    if (!next || *next == Source::State::end) {
+      ending_ = next ? call_.ok() : call_.failed(next.error());
+      source_.reset();
+      return false;
+    }
+    call_.count_out(wire_bytes(message));
+    const std::lock_guard lock(writing_);
+    ++made_;
+    if (!is_writing_ && !has_broken_) write_first();
+    return true;
+  }
+
+  /// With the lock held, when no write is under way.
+  void write_first() {
+    is_writing_ = true;
+    call_.expect_client(call_.room().reader_patience);
+    this->StartWrite(&messages_[first_ % kMost]);
+  }
+
+  bool is_writing() {
+    const std::lock_guard lock(writing_);
+    return is_writing_;
+  }
+  bool is_all_written() {
+    const std::lock_guard lock(writing_);
+    return !is_writing_ && first_ == made_;
   }
 
   void finish(grpc::Status status) {
@@ -134,12 +170,16 @@ class StreamingCall : public Reactor, public Strand {
   }
 
   Call call_;
-  Message message_;
-  std::atomic<bool> is_written_{false}, has_broken_{false}, has_arrived_{false};
+  std::atomic<bool> has_broken_{false}, has_arrived_{false};
+  std::mutex writing_;  ///< of what follows
+  std::array<Message, kMost> messages_;
+  std::size_t first_ = 0, made_ = 0;  ///< messages taken by the client, and made, since the beginning
+  bool is_writing_ = false;
   // Of the strand:
-  bool is_writing_ = false, has_opened_ = false, is_finished_ = false;
+  bool has_opened_ = false, is_finished_ = false;
   std::unique_ptr<Source> source_, arriving_;
-  std::optional<grpc::Status> end_;
+  std::optional<grpc::Status> end_;     ///< instead of a source that was to come
+  std::optional<grpc::Status> ending_;  ///< once all is written
   std::shared_ptr<StreamingCall> self_;
 };
 

@@ -1,6 +1,7 @@
 """The images as they are deployed: read-only, without root or capabilities, bounded, two servers on one store behind the edge.
 
-Environment: GEOSIS = the built binary, for a survey. Root; .ci/images.sh before it.
+Environment: GEOSIS = the built binary, for a survey; PYTHONPATH = the contract's messages as protoc makes them. Root;
+.ci/images.sh before it.
 """
 import ctypes
 import http.client
@@ -15,6 +16,9 @@ import threading
 import time
 import unittest
 from pathlib import Path
+
+import grpc
+from geosis.v1 import extraction_pb2, extraction_pb2_grpc, volume_pb2, volume_pb2_grpc
 
 from containers import IMAGES, Container, Names, make_network, remove_control_groups, run
 
@@ -85,6 +89,26 @@ def extraction_by(address):
         status, _, files[f"{extraction}/{name}"] = call(address, "GET", f"{extraction}/{name}")
         assert status == 200, name
     return files
+
+
+def stream_by_grpc(address, extraction):
+    """Manifest and parts, {level.part: bytes}, of a finished extraction."""
+    parts, manifest = {}, None
+    with grpc.insecure_channel(f"{address}:8081") as channel:
+        request = extraction_pb2.StreamLodsRequest(id=extraction.rsplit("/", 1)[1])
+        for chunk in extraction_pb2_grpc.ExtractionServiceStub(channel).StreamLods(request, timeout=60):
+            if chunk.WhichOneof("content") == "manifest":
+                manifest = chunk.manifest
+            else:
+                name = f"{chunk.part.level}.{chunk.part.part}"
+                parts[name] = parts.get(name, b"") + chunk.part.data
+    return manifest, parts
+
+
+def volumes_by_grpc(address):
+    with grpc.insecure_channel(f"{address}:8081") as channel:
+        stub = volume_pb2_grpc.VolumeServiceStub(channel)
+        return len(stub.ListVolumes(volume_pb2.ListVolumesRequest(), timeout=20).volumes)
 
 
 class Images(unittest.TestCase):
@@ -161,6 +185,11 @@ class Deployment(unittest.TestCase):
                 self.assertEqual([status, headers["x-cache"], again == body], [200, "HIT", True], path)
                 for address in (FIRST, SECOND):
                     self.assertTrue(call(address, "GET", path)[2] == body, "another server has other bytes")
+            extraction = next(iter(files)).rsplit("/", 1)[0]
+            manifest, parts = stream_by_grpc(EDGE, extraction)
+            self.assertEqual(manifest.id, extraction.rsplit("/", 1)[1])
+            for level in range(5):
+                self.assertTrue(parts[f"{level}.0"] == files[f"{extraction}/lods/{level}.drc"])
             for _ in range(8):
                 call(EDGE, "GET", "/v1/volumes")
             lines = [json.loads(line) for line in before.log.read_text().splitlines() if line.startswith("{")]
@@ -170,6 +199,7 @@ class Deployment(unittest.TestCase):
             second.kill("KILL")
             second.process.wait(timeout=30)
             self.assertEqual([call(EDGE, "GET", "/v1/volumes")[0] for _ in range(8)], [200] * 8)
+            self.assertEqual([volumes_by_grpc(EDGE) for _ in range(8)], [1] * 8)
             self.assertEqual([before.stop(), first.stop()], [0, 0])
 
 

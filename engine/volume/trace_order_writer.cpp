@@ -1,5 +1,6 @@
 #include "engine/volume/trace_order_writer.h"
 
+#include <algorithm>
 #include <cstring>
 #include <vector>
 
@@ -12,19 +13,28 @@ TraceOrderWriter::TraceOrderWriter(BrickWriter& writer)
 
 Result<void> TraceOrderWriter::put(std::int32_t column, std::int32_t i, std::int32_t j,
                                    std::span<const float> samples) {
+  const BrickLayout& layout = writer_.layout();
+  const auto trace = static_cast<std::size_t>(layout.shape().samples);
+  const std::int64_t crosslines = this->crosslines(column);
+  const std::int64_t begin = i * crosslines + (j - first_crossline(column));  // in traces of the column
+  const std::int64_t end = begin + static_cast<std::int64_t>(samples.size() / trace);
   // A shared inline ends one layer before it begins the next.
-  const BrickSpan layers = bricks_with(i, writer_.layout().grid().inlines);
-  for (std::int32_t layer = layers.first; layer <= layers.last; ++layer)
-    if (auto done = put_in_layer({layer, column, 0}, i, j, samples); !done) return done;
+  GridIndex place{bricks_with(i, layout.grid().inlines).first, column, 0};
+  for (; place.i < layout.grid().inlines; ++place.i) {
+    const std::int64_t first = layout.first_node(place).i * crosslines;
+    const std::int64_t from = std::max(begin, first);
+    const std::int64_t to = std::min(end, first + layout.extent(place).inlines * crosslines);
+    if (from >= to) break;
+    const auto part =
+        samples.subspan(static_cast<std::size_t>(from - begin) * trace, static_cast<std::size_t>(to - from) * trace);
+    if (auto done = put_in_layer(place, from - first, part); !done) return done;
+  }
   return {};
 }
 
-Result<void> TraceOrderWriter::put_in_layer(GridIndex place, std::int32_t i, std::int32_t j,
-                                            std::span<const float> samples) {
+Result<void> TraceOrderWriter::put_in_layer(GridIndex place, std::int64_t first_row, std::span<const float> samples) {
   const BrickLayout& layout = writer_.layout();
-  const GridIndex first = layout.first_node(place);
   const GridShape extent = layout.extent(place);
-  const std::int64_t first_row = std::int64_t{i - first.i} * extent.crosslines + (j - first.j);
   for (; place.k < layout.grid().samples; ++place.k)
     if (auto done = put_in_brick(place, first_row, samples); !done) return done;
   const auto traces = static_cast<std::int64_t>(samples.size()) / layout.shape().samples;

@@ -29,11 +29,12 @@ class TraceOrderWriter {
   std::int32_t first_crossline(std::int32_t column) const { return column * kBrickCells; }
   std::int32_t crosslines(std::int32_t column) const { return writer_.layout().extent({0, column, 0}).crosslines; }
 
-  /// Whole traces of inline i at crosslines j, j + 1, ... of the column. errors: unavailable, no_space.
+  /// Whole traces of the column, from inline i and crossline j on: its crosslines, then those of the next inline. Many
+  /// at once are written in longer pieces. errors: unavailable, no_space.
   Result<void> put(std::int32_t column, std::int32_t i, std::int32_t j, std::span<const float> samples);
 
  private:
-  Result<void> put_in_layer(GridIndex place, std::int32_t i, std::int32_t j, std::span<const float> samples);
+  Result<void> put_in_layer(GridIndex place, std::int64_t first_row, std::span<const float> samples);
   Result<void> put_in_brick(GridIndex place, std::int64_t first_row, std::span<const float> samples);
 
   BrickWriter& writer_;

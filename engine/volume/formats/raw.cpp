@@ -85,39 +85,50 @@ class RawTraces {
     const std::int64_t crosslines = layout_.shape.crosslines;
     const std::int32_t begin = writer_.first_crossline(column), end = begin + writer_.crosslines(column);
     const auto first = static_cast<std::int64_t>(batch.first), last = first + static_cast<std::int64_t>(batch.count);
+    Run run;
     for (std::int64_t i = first / crosslines; i * crosslines < last; ++i) {
       const std::int64_t stop = std::min(last, i * crosslines + end);
-      for (std::int64_t from = std::max(first, i * crosslines + begin), to = from; from < stop; from = to) {
-        to = std::min(stop, from + std::max<std::int64_t>(1, kSamplesAtOnce / layout_.shape.samples));
-        const std::vector<float> samples = decode(batch, column, from, to);
-        const auto crossline = static_cast<std::int32_t>(from - i * crosslines);
-        if (auto put = writer_.put(column, static_cast<std::int32_t>(i), crossline, samples); !put) return put;
+      for (std::int64_t trace = std::max(first, i * crosslines + begin); trace < stop; ++trace) {
+        if (run.samples.empty()) run.first = trace;
+        decode(batch, trace, column, run.samples);
+        if (run.samples.size() < kSamplesAtOnce) continue;
+        if (auto put = put_run(column, run); !put) return put;
       }
     }
-    return {};
+    return run.samples.empty() ? Result<void>{} : put_run(column, run);
   }
 
  private:
-  static constexpr std::int64_t kSamplesAtOnce = 1 << 20;  // 4 MiB
+  static constexpr std::size_t kSamplesAtOnce = 1 << 20;  // 4 MiB
 
-  /// The traces [from, to), which lie in the batch. The last crossline of a column counts for the next one.
-  std::vector<float> decode(const RecordBatch& batch, std::int32_t column, std::int64_t from, std::int64_t to) {
-    const auto trace_samples = static_cast<std::size_t>(layout_.shape.samples);
-    const std::uint64_t trace_bytes = layout_.bytes_of(layout_.shape.samples);
-    const std::int64_t own_end =
-        column + 1 < writer_.columns() ? writer_.first_crossline(column + 1) : layout_.shape.crosslines;
-    std::vector<float> samples(static_cast<std::size_t>(to - from) * trace_samples);
-    for (std::int64_t trace = from; trace < to; ++trace) {
-      const auto line =
-          std::span(samples).subspan(static_cast<std::size_t>(trace - from) * trace_samples, trace_samples);
-      const std::uint64_t offset = (static_cast<std::uint64_t>(trace) - batch.first) * trace_bytes;
-      decode_samples(layout_.code, layout_.big_endian, batch.bytes.subspan(offset, trace_bytes), line);
-      const SampleCounts counts = layout_.null.clean(line);
-      if (trace % layout_.shape.crosslines >= own_end) continue;
-      tally_.add_infinite(counts.infinite);
-      tally_.add_trace(layout_.shape.samples, counts.missing);
-    }
-    return samples;
+  /// Traces of one column that follow each other.
+  struct Run {
+    std::int64_t first = 0;
+    std::vector<float> samples;
+  };
+
+  Result<void> put_run(std::int32_t column, Run& run) {
+    const std::int64_t crosslines = layout_.shape.crosslines;
+    auto put = writer_.put(column, static_cast<std::int32_t>(run.first / crosslines),
+                           static_cast<std::int32_t>(run.first % crosslines), run.samples);
+    run.samples.clear();
+    return put;
+  }
+
+  /// Appends the trace. The last crossline of a column counts for the next one.
+  void decode(const RecordBatch& batch, std::int64_t trace, std::int32_t column, std::vector<float>& samples) {
+    const auto length = static_cast<std::size_t>(layout_.shape.samples);
+    const std::uint64_t bytes = layout_.bytes_of(layout_.shape.samples);
+    samples.resize(samples.size() + length);
+    const auto line = std::span(samples).last(length);
+    decode_samples(layout_.code, layout_.big_endian,
+                   batch.bytes.subspan((static_cast<std::uint64_t>(trace) - batch.first) * bytes, bytes), line);
+    const SampleCounts counts = layout_.null.clean(line);
+    const bool is_own =
+        column + 1 == writer_.columns() || trace % layout_.shape.crosslines < writer_.first_crossline(column + 1);
+    if (!is_own) return;
+    tally_.add_infinite(counts.infinite);
+    tally_.add_trace(layout_.shape.samples, counts.missing);
   }
 
   const RawLayout& layout_;

@@ -118,17 +118,17 @@ TEST(Bricks, HoldTracesWrittenInOrderInPiecesOfAnyLength) {
     ASSERT_TRUE(writer) << writer.error().message;
     TraceOrderWriter traces(*writer);
     for (std::int32_t column = 0; column < traces.columns(); ++column) {
-      const std::int32_t begin = traces.first_crossline(column), end = begin + traces.crosslines(column);
-      for (std::int32_t i = 0; i < shape.inlines; ++i)
-        for (std::int32_t j = begin, count = 0; j < end; j += count) {
-          count = std::min<std::int32_t>(1 + static_cast<std::int32_t>(random() % 40), end - j);
-          const auto trace = std::size_t{static_cast<std::uint32_t>(i)} * static_cast<std::size_t>(shape.crosslines) +
-                             static_cast<std::size_t>(j);
-          const auto samples = static_cast<std::size_t>(shape.samples);
-          ASSERT_TRUE(traces.put(
-              column, i, j,
-              std::span(volume.samples).subspan(trace * samples, static_cast<std::size_t>(count) * samples)));
+      const std::int32_t begin = traces.first_crossline(column), crosslines = traces.crosslines(column);
+      for (std::int32_t row = 0, count = 0; row < shape.inlines * crosslines; row += count) {
+        count = std::min<std::int32_t>(1 + static_cast<std::int32_t>(random() % 200), shape.inlines * crosslines - row);
+        std::vector<float> samples;
+        for (std::int32_t r = row; r < row + count; ++r) {
+          const std::int64_t trace = std::int64_t{r / crosslines} * shape.crosslines + begin + r % crosslines;
+          const auto from = volume.samples.begin() + trace * shape.samples;
+          samples.insert(samples.end(), from, from + shape.samples);
         }
+        ASSERT_TRUE(traces.put(column, row / crosslines, begin + row % crosslines, samples));
+      }
     }
     NoProgress unwatched;
     const auto bricks = std::move(*writer).finish(2, unwatched);

@@ -19,21 +19,33 @@ std::vector<std::uint32_t> bodies_of(std::span<const std::int32_t> origin, std::
   return bodies;
 }
 
+/// Where the samples are that count at each vertex; empty when the vertices are there themselves.
+std::vector<Vec3f> moved_to_samples(const IndexedMesh& mesh, std::span<const std::int32_t> origin,
+                                    const AttributeSources& sources) {
+  if (sources.rectified != nullptr) return to_samples(*sources.rectified, mesh.positions, sources.threads);
+  if (sources.places.empty() || origin.empty()) return {sources.places.begin(), sources.places.end()};
+  std::vector<Vec3f> places;
+  places.reserve(origin.size());
+  for (const std::int32_t vertex : origin) places.push_back(sources.places[static_cast<std::size_t>(vertex)]);
+  return places;
+}
+
 }  // namespace
 
 Result<VertexAttributes> attributes_of(const IndexedMesh& mesh, std::span<const std::int32_t> origin,
                                        const AttributeSources& sources, const Progress& progress) {
   VertexAttributes attributes;
   attributes.body = bodies_of(origin, sources.body);
-  std::vector<Vec3f> at_samples;
-  if (sources.rectified != nullptr) at_samples = to_samples(*sources.rectified, mesh.positions, sources.threads);
-  const std::vector<Vec3f>& positions = sources.rectified != nullptr ? at_samples : mesh.positions;
+  const std::vector<Vec3f> at_samples = moved_to_samples(mesh, origin, sources);
+  const std::vector<Vec3f>& positions = at_samples.empty() ? mesh.positions : at_samples;
   if (sources.filled != nullptr) {
     auto reliability = reliability_at(*sources.filled, positions, sources.threads, progress);
     if (!reliability) return std::move(reliability).error();
     attributes.reliability = *std::move(reliability);
   }
-  if (sources.normals != nullptr) {
+  if (sources.flat_normals) {
+    attributes.normal = normals_of_triangles(mesh);
+  } else if (sources.normals != nullptr) {
     auto normals =
         normals_of(mesh, *sources.normals, sources.normals_first, sources.mirrored, sources.threads, progress);
     if (!normals) return std::move(normals).error();

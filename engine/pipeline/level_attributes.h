@@ -21,6 +21,8 @@ struct AttributeSources {
   GridIndex normals_first = {};            ///< the place of their node (0, 0, 0) in the mesh's coordinates
   bool mirrored = false;                   ///< as the triangles are ordered
   const BrickedVolume* value = nullptr;    ///< any volume of the shape of the one that M0 was extracted from
+  std::span<const Vec3f> places{};         ///< where M0's vertices lie among the samples; empty: where the meshes are
+  bool flat_normals = false;  ///< normals: of the triangles, for want of a gradient in the mesh's coordinates
   const LayerMap* rectified =
       nullptr;  ///< set when the meshes are on the rectified grid, and not where the samples are
   int threads = 1;

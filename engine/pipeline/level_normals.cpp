@@ -12,7 +12,7 @@ namespace {
 constexpr double kLeastCosine = 0.8;
 
 /// Mean direction of the triangles around each vertex, weighted by area; not of unit length.
-std::vector<Vec3d> normals_of_triangles(const IndexedMesh& mesh) {
+std::vector<Vec3d> sums_of_normals(const IndexedMesh& mesh) {
   std::vector<Vec3d> normals(mesh.positions.size());
   for (const auto& [a, b, c] : mesh.triangles) {
     const Vec3d p = to_double(mesh.positions[a]);
@@ -74,6 +74,13 @@ Vec3f choose(Vec3d gradient, Vec3d of_triangles) {
 
 }  // namespace
 
+std::vector<Vec3f> normals_of_triangles(const IndexedMesh& mesh) {
+  std::vector<Vec3f> normals;
+  normals.reserve(mesh.positions.size());
+  for (const Vec3d& sum : sums_of_normals(mesh)) normals.push_back(unit(sum));
+  return normals;
+}
+
 Result<std::vector<Vec3f>> normals_of(const IndexedMesh& mesh, const BrickedVolume& samples, GridIndex first,
                                       bool mirrored, int threads, const Progress& progress) {
   std::vector<Vec3d> gradient(mesh.positions.size());
@@ -82,7 +89,7 @@ Result<std::vector<Vec3f>> normals_of(const IndexedMesh& mesh, const BrickedVolu
     if (!slope) return slope.error();
     for (std::size_t v = 0; v < gradient.size(); ++v) gradient[v][axis] = (*slope)[v];
   }
-  const std::vector<Vec3d> of_triangles = normals_of_triangles(mesh);
+  const std::vector<Vec3d> of_triangles = sums_of_normals(mesh);
   std::vector<Vec3f> normals(gradient.size());
   for (std::size_t v = 0; v < normals.size(); ++v) {
     normals[v] = choose(gradient[v], of_triangles[v] * (mirrored ? -1.0 : 1.0));

@@ -24,4 +24,7 @@ namespace geosis {
 Result<std::vector<Vec3f>> normals_of(const IndexedMesh& mesh, const BrickedVolume& samples, GridIndex first,
                                       bool mirrored, int threads, const Progress& progress);
 
+/// Unit normals that are the mean direction of the triangles alone, which look out of the body.
+std::vector<Vec3f> normals_of_triangles(const IndexedMesh& mesh);
+
 }  // namespace geosis

@@ -15,14 +15,17 @@ AffineGeometry with_vertical_scale(const std::array<double, 16>& m, double scale
 
 }  // namespace
 
+double vertical_scale_of(const ReconstructOptions& options) {
+  // Down to the reflector and up again: the way there takes half the time.
+  return options.velocity ? *options.velocity / 2 / kMsPerSecond : 1;
+}
+
 Result<AffineGeometry> output_space(const GridGeometry& geometry, const ReconstructOptions& options) {
   if (options.index_space) return AffineGeometry();
   if (geometry.affine() == nullptr) {
     return Error{ErrorCode::unsupported, "world space of a grid that is not affine; ask for index space"};
   }
-  // Down to the reflector and up again: the way there takes half the time.
-  const double scale = options.velocity ? *options.velocity / 2 / kMsPerSecond : 1;
-  return with_vertical_scale(*geometry.affine(), scale);
+  return with_vertical_scale(*geometry.affine(), vertical_scale_of(options));
 }
 
 }  // namespace geosis

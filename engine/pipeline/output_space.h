@@ -6,6 +6,9 @@
 
 namespace geosis {
 
+/// What the vertical axis is multiplied by on the way to world space.
+double vertical_scale_of(const ReconstructOptions& options);
+
 /// The space that a result is in: the world that the volume's geometry maps to, with depth in place of two-way time
 /// where the options have a velocity (depth = time / 2 * velocity; times in ms, positive down), or index space.
 ///

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/pipeline/certify.h"
+#include "engine/pipeline/curved_space.h"
 #include "engine/pipeline/finish_levels.h"
 #include "engine/pipeline/grid_stage.h"
 #include "engine/pipeline/level_attributes.h"
@@ -42,8 +43,9 @@ auto timed(double& seconds, const Stage& stage) {
 struct Run {
   const ReconstructInput& input;
   const ReconstructOptions& options;
-  const AffineGeometry& space;  ///< from index coordinates to the requested space
-  const LayerMap* layers;       ///< of the structural grid; null on the axis grid
+  AffineGeometry space;           ///< from the meshes' coordinates to the requested space
+  std::span<const Vec3f> places;  ///< of M0's vertices among the samples, on a grid that is not affine
+  const LayerMap* layers;         ///< of the structural grid; null on the axis grid
   EncodeOptions encode;
   Progress& progress;
   StageTimings& timings;
@@ -56,8 +58,11 @@ struct Run {
 
 const Error kCancelled = {ErrorCode::cancelled, "the reconstruction was cancelled"};
 
-Result<EncodeOptions> choose_encoding(GridShape shape, const AffineGeometry& space, const ReconstructOptions& options) {
-  const int needed = position_bits_for(std::max({shape.inlines, shape.crosslines, shape.samples}));
+int bits_for(GridShape shape) {
+  return position_bits_for(std::max({shape.inlines, shape.crosslines, shape.samples}));
+}
+
+Result<EncodeOptions> choose_encoding(int needed, const AffineGeometry& space, const ReconstructOptions& options) {
   const int bits = options.position_bits.value_or(needed);
   if (bits < needed || bits > kMaxPositionBits) {
     return Error{ErrorCode::invalid_argument, "position bits " + std::to_string(bits) + "; this volume needs " +
@@ -132,6 +137,8 @@ class Levels {
                         .normals_first = is_rectified ? rectified_.first : GridIndex{},
                         .mirrored = run_.space.mirrored(),
                         .value = options.attributes.value ? run_.input.attribute_volume : nullptr,
+                        .places = run_.places,
+                        .flat_normals = options.normals && !run_.places.empty(),
                         .rectified = run_.rectified(),
                         .threads = options.threads},
             .keep_reliability = options.attributes.reliability,
@@ -198,14 +205,28 @@ class Levels {
 Result<Reconstruction> run_stages(const Run& run) {
   auto samples = timed(run.timings.fill, [&] { return fill_stage(run.input, run.options, run.progress); });
   if (!samples) return std::move(samples).error();
-  const ExtractStage stage{
-      .bodies = run.options.attributes.body, .mirrored = run.space.mirrored(), .layers = run.layers};
+  const bool is_curved = is_curved_space(run.input.geometry, run.options);
+  const bool mirrored = is_curved ? run.input.geometry.mirrored() : run.space.mirrored();
+  const ExtractStage stage{.bodies = run.options.attributes.body, .mirrored = mirrored, .layers = run.layers};
   auto m0 =
       timed(run.timings.extract, [&] { return extract_stage(*samples->samples, run.options, stage, run.progress); });
   if (!m0) return std::move(m0).error();
   if (m0->surface.mesh.triangles.empty()) return Reconstruction{};
   if (run.progress.cancelled()) return kCancelled;
-  return Levels(*std::move(m0), *samples, run).make();
+  if (!is_curved) return Levels(*std::move(m0), *samples, run).make();
+  const auto curved = timed(run.timings.extract, [&] {
+    return bend_surface(run.input.geometry, run.input.samples.shape(), run.options, run.progress, m0->surface);
+  });
+  if (!curved) return curved.error();
+  Run bent = run;
+  bent.space = curved->space;
+  bent.places = curved->places;
+  auto encode = choose_encoding(position_bits_for(m0->surface.mesh), bent.space, run.options);
+  if (!encode) return std::move(encode).error();
+  bent.encode = *encode;
+  auto result = Levels(*std::move(m0), *samples, bent).make();
+  if (result) result->transform = *bent.space.affine();
+  return result;
 }
 
 }  // namespace
@@ -213,26 +234,34 @@ Result<Reconstruction> run_stages(const Run& run) {
 Result<Reconstruction> reconstruct(const ReconstructInput& input, const ReconstructOptions& options, Progress& progress,
                                    StageTimings* timings, const LevelSink& on_level) {
   if (options.levels.empty()) return Error{ErrorCode::invalid_argument, "no levels asked for"};
-  const auto space = output_space(input.geometry, options);
-  if (!space) return space.error();
+  AffineGeometry space;  // a grid that is not affine has its own, once M0 is there
+  if (!is_curved_space(input.geometry, options)) {
+    auto affine = output_space(input.geometry, options);
+    if (!affine) return std::move(affine).error();
+    space = *affine;
+  }
   if (auto checked = check_attribute_volume(input, options); !checked) return std::move(checked).error();
   StageTimings unread;
   StageTimings& spent = timings != nullptr ? *timings : unread;
   auto grid = timed(spent.grid, [&] { return grid_stage(input, options, progress); });
   if (!grid) return std::move(grid).error();
   const bool is_rectified = grid->structural != nullptr && options.index_space;
-  auto encode = choose_encoding(is_rectified ? grid->structural->paths.grid() : input.samples.shape(), *space, options);
+  const GridShape shape = is_rectified ? grid->structural->paths.grid() : input.samples.shape();
+  auto encode = choose_encoding(bits_for(shape), space, options);
   if (!encode) return std::move(encode).error();
   const std::optional<LayerMap> layers = layer_map(*grid, input.samples.shape(), options);
   auto result = run_stages({.input = input,
                             .options = options,
-                            .space = *space,
+                            .space = space,
+                            .places = {},
                             .layers = layers ? &*layers : nullptr,
                             .encode = *encode,
                             .progress = progress,
                             .timings = spent,
                             .on_level = on_level});
-  if (result) result->grid = grid->report;
+  if (!result) return result;
+  result->grid = grid->report;
+  if (!is_curved_space(input.geometry, options)) result->transform = *space.affine();
   return result;
 }
 

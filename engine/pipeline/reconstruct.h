@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <optional>
@@ -104,7 +105,10 @@ struct GridReport {
 
 struct Reconstruction {
   std::vector<ReconstructedLevel> levels;  ///< level 0 = finest; empty when nothing is in the range
-  std::optional<GridReport> grid = {};     ///< unset when the given grid was asked for
+  /// From the levels' coordinates to the requested space, row-major. On a grid that is not affine a shift and a scale,
+  /// which is a power of two: world positions in units of about a cell's edge.
+  std::array<double, 16> transform = {};
+  std::optional<GridReport> grid = {};  ///< unset when the given grid was asked for
 };
 
 /// Seconds of each stage on the caller's clock, for the caller's eyes only: never part of a result. Levels are encoded
@@ -138,8 +142,8 @@ struct ReconstructInput {
 ///
 /// errors     those of lay_structural_grid, fill_missing, extract_body, build_lods and encode_level.  invalid_argument:
 /// position bits that
-///            cannot hold the volume, `value` without its volume, or with one of another shape.  unsupported: world
-///            space of a geometry that is not affine.  cancelled.
+///            cannot hold the volume, `value` without its volume, or with one of another shape.  limit_exceeded: a
+///            surface too long for the lattice.  cancelled.
 Result<Reconstruction> reconstruct(const ReconstructInput& input, const ReconstructOptions& options, Progress& progress,
                                    StageTimings* timings = nullptr, const LevelSink& on_level = {});
 

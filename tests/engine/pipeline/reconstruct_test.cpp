@@ -219,11 +219,15 @@ class Bent final : public GridGeometry {
   bool mirrored() const override { return false; }
 };
 
-TEST(Reconstruct, CurvedGeometriesWorkInIndexSpaceOnly) {
+TEST(Reconstruct, CurvedGeometriesHaveALatticeOfTheirOwn) {
   ReconstructOptions options = kBall;
-  EXPECT_EQ(error_of(options, Bent()).code, ErrorCode::unsupported);
+  const Reconstruction world = reconstruct_ball(options, Bent());
+  ASSERT_EQ(world.levels.size(), 3u);
+  EXPECT_GT(world.levels[0].measures.volume, 0);
   options.index_space = true;
-  EXPECT_EQ(reconstruct_ball(options, Bent()).levels.size(), 3u);
+  const Reconstruction index = reconstruct_ball(options, Bent());
+  ASSERT_EQ(index.levels.size(), 3u);
+  EXPECT_EQ(world.levels[0].topology.euler, index.levels[0].topology.euler);
 }
 
 /// Cancels as soon as the given stage reports.

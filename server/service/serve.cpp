@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,6 +38,12 @@ constexpr std::chrono::seconds kLongestStop{3};  ///< after the time for finishi
 
 bool is_loopback(std::string_view listen) {
   return listen.starts_with("127.") || listen.starts_with("localhost:") || listen.starts_with("[::1]:");
+}
+
+/// What is too big for memory and has no name (samples laid out along layers, volumes of one-shot calls) lies on the
+/// store's disk: /tmp may be small, or memory itself. Before any thread begins. Whoever sets TMPDIR knows better.
+void keep_temporary_files_in(const std::filesystem::path& store) {
+  ::setenv("TMPDIR", (std::filesystem::absolute(store) / "staging").c_str(), 0);
 }
 
 /// Who may call: the keys, or nothing where anybody may. What others reach must be said to be open.
@@ -137,6 +145,7 @@ Result<void> serve(const ServeOptions& options) {
   Metrics metrics(service_families());
   auto opened = open_dir_store(options.store);
   if (!opened) return std::move(opened).error();
+  keep_temporary_files_in(options.store);
   LimitedStore store(*std::move(opened), {.limit = options.store_limit});
   store.on_damage([&log](const BlobKey& key, const std::string& why) {
     log.write(LogLevel::error, "damage in the store", {{"blob", key}, {"why", why}});

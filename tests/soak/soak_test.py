@@ -1,5 +1,5 @@
-"""Mixed load on a running server (environment variable GEOSIS = the binary): uploads, extractions, streams, slow readers,
-watchers of events, withdrawals, deletions, small questions. In the end memory (RssAnon + RssShmem) and descriptors must
+"""Mixed load on both doors of a running server (environment variable GEOSIS = the binary): uploads, extractions, streams,
+slow readers, watchers of events, withdrawals, deletions, small questions; every fourth client calls by gRPC. In the end memory (RssAnon + RssShmem) and descriptors must
 be where they were after the warm-up, and nothing may have failed. Refusals with Retry-After (429, 503) are answers.
 
 soak_test.py [--seconds 600] [--clients 16] [--seed N]"""
@@ -18,6 +18,13 @@ import tempfile
 import threading
 import time
 import urllib.parse
+
+import grpc
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../contract"))
+from geosis.v1 import extraction_pb2  # noqa: E402
+from grpc_door import GrpcDoor, message_of  # noqa: E402
+from refused import Refused  # noqa: E402
 
 GEOSIS = os.environ["GEOSIS"]
 SIDE = 56  # samples an axis of the volumes that come and go
@@ -49,9 +56,10 @@ BASES = [volume(SIDE, seed) for seed in range(4)]
 class Server:
     def __init__(self, store):
         self.process = subprocess.Popen(
-            [GEOSIS, "serve", "--listen", "127.0.0.1:0", "--grpc", "off", "--store", store, "--queued", "64", "--admin", "", "--log-level", "warning"],
+            [GEOSIS, "serve", "--listen", "127.0.0.1:0", "--grpc", "127.0.0.1:0", "--store", store, "--queued", "64", "--admin", "", "--log-level", "warning"],
             stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
-        self.address = urllib.parse.urlsplit(self.process.stdout.readline().split()[-1]).netloc
+        self.address, self.grpc_address = (urllib.parse.urlsplit(self.process.stdout.readline().split()[-1]).netloc
+                                           for _ in range(2))
 
     def memory(self):
         total = 0
@@ -74,9 +82,12 @@ class Client(threading.Thread):
         self.random = random.Random(seed)
         self.problem = None
 
+    def actions(self):
+        return [self.upload_and_delete, self.extract_and_purge, self.stream, self.read_slowly, self.watch,
+                self.withdraw, self.ask_small_things, self.ask_small_things, self.hang_up]
+
     def run(self):
-        actions = [self.upload_and_delete, self.extract_and_purge, self.stream, self.read_slowly, self.watch,
-                   self.withdraw, self.ask_small_things, self.ask_small_things, self.hang_up]
+        actions = self.actions()
         while time.monotonic() < self.end and not self.problem:
             action = self.random.choice(actions)
             try:
@@ -200,6 +211,75 @@ class Client(threading.Thread):
                   Content_Type="application/json")
 
 
+class GrpcClient(Client):
+    """The same by gRPC. A connection for each action, as those who come once have."""
+
+    def actions(self):
+        return [self.with_door(action) for action in (self.grpc_upload_and_delete, self.grpc_stream, self.grpc_one_shot,
+                                                      self.grpc_watch, self.grpc_read_slowly, self.grpc_hang_up)]
+
+    def with_door(self, action):
+        def act():
+            door = GrpcDoor(self.server.grpc_address, None)
+            try:
+                action(door)
+            except Refused as refused:
+                # Purged or withdrawn by somebody else, or too busy.
+                if refused.code not in ("not_found", "cancelled", "already_exists", "quota_exceeded", "unavailable"):
+                    raise
+                self.tally[f"grpc {refused.code}"] += 1
+                time.sleep(0.2)
+            finally:
+                door.channel.close()
+        act.__name__ = action.__name__
+        return act
+
+    def made(self, door):
+        return door.create(self.kept, json.loads(self.request()), self.random.choice(["interactive", "batch"]))["id"]
+
+    def own_volume(self):
+        data = bytearray(self.random.choice(BASES))
+        data[:8] = array.array("f", [self.random.random(), self.random.random()]).tobytes()
+        return bytes(data), {"format": "raw", "dims": [SIDE, SIDE, SIDE]}
+
+    def grpc_upload_and_delete(self, door):
+        document, _ = door.upload(*self.own_volume())
+        door.histogram(document["id"], 64)
+        door.remove(document["id"])
+
+    def grpc_stream(self, door):
+        extraction = self.made(door)
+        door.stream(extraction)
+        door.bodies(extraction)
+        if self.random.random() < 0.5:
+            door.cancel(extraction, purge=True)
+
+    def grpc_one_shot(self, door):
+        data, options = self.own_volume()
+        door.extract(data, self.random.random() - 0.5, 2, options)
+
+    def grpc_watch(self, door):
+        door.watch(self.made(door))
+
+    def grpc_read_slowly(self, door):
+        chunks = door.extraction_stub.StreamLods(extraction_pb2.StreamLodsRequest(id=self.made(door)))
+        end = time.monotonic() + 3
+        try:
+            for _ in chunks:
+                time.sleep(0.2)
+                if time.monotonic() > end:
+                    break
+        except grpc.RpcError as error:
+            if error.code() not in (grpc.StatusCode.NOT_FOUND, grpc.StatusCode.CANCELLED, grpc.StatusCode.UNAVAILABLE):
+                raise
+        chunks.cancel()
+
+    def grpc_hang_up(self, door):
+        asked = extraction_pb2.CreateExtractionRequest(volume=self.kept,
+                                                       request=message_of(extraction_pb2.Request, json.loads(self.request())))
+        door.extraction_stub.CreateExtraction.future(asked).cancel()
+
+
 def settled(values, seconds, elapsed):
     """Median of the samples of a window, in shares of the time."""
     inside = [v for t, v in values if seconds[0] <= t / elapsed <= seconds[1]]
@@ -222,7 +302,8 @@ def main():
         idle = server.descriptors()
         begin = time.monotonic()
         tally = collections.Counter()
-        clients = [Client(server, kept, options.seed + n, begin + options.seconds, tally) for n in range(options.clients)]
+        clients = [(GrpcClient if n % 4 == 3 else Client)(server, kept, options.seed + n, begin + options.seconds, tally)
+                   for n in range(options.clients)]
         for one in clients:
             one.start()
         memory, descriptors = [], []

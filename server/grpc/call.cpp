@@ -74,6 +74,11 @@ void Call::over() {
   }
 }
 
+std::string Call::peer() const {
+  const std::string client = context_.peer();  // "ipv4:127.0.0.1:51220"
+  return client.substr(0, client.rfind(':'));
+}
+
 grpc::Status Call::ok() {
   status_ = grpc::StatusCode::OK;
   return grpc::Status::OK;

@@ -65,6 +65,8 @@ class Call {
   CallRoom& room() const { return room_; }
   Services services() const { return room_.services_of(tenant_); }
   const std::string& request_id() const { return head_.request_id; }
+  /// The client's address, without port.
+  std::string peer() const;
 
   void count_in(std::uint64_t bytes) { bytes_in_ += bytes; }
   void count_out(std::uint64_t bytes) { bytes_out_ += bytes; }

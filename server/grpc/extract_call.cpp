@@ -35,7 +35,8 @@ class ExtractCall final : public Streaming {
         return;
       case Next::start: {
         const auto self = std::static_pointer_cast<ExtractCall>(shared_from_this());
-        if (!call().room().uploads.start([self] { self->run(); })) return set_end(call().failed(too_busy()));
+        if (!call().room().uploads.start(call().peer(), [self] { self->run(); }))
+          return set_end(call().failed(too_busy()));
         if (receiver_.reads_on()) StartRead(&bytes_);
         return;
       }

@@ -37,7 +37,8 @@ class UploadCall final : public grpc::ServerReadReactor<v1::UploadVolumeRequest>
       case Next::wait:
         return;
       case Next::start:
-        if (!call_.room().uploads.start([self = self_] { self->run(); })) return Finish(call_.failed(too_busy()));
+        if (!call_.room().uploads.start(call_.peer(), [self = self_] { self->run(); }))
+          return Finish(call_.failed(too_busy()));
         if (receiver_.reads_on()) StartRead(&message_);
         return;
       case Next::refuse:

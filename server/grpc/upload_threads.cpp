@@ -1,17 +1,22 @@
 #include "server/grpc/upload_threads.h"
 
+#include <algorithm>
 #include <memory>
 #include <system_error>
 #include <utility>
 
 namespace geosis::server::rpc {
 
-bool UploadThreads::start(std::function<void()> work) {
-  auto slot = slots_.take();
-  if (!slot) return false;
+bool UploadThreads::start(const std::string& peer, std::function<void()> work) {
   const std::lock_guard lock(mutex_);
   join_ended();
+  const auto of_peer =
+      std::count_if(threads_.begin(), threads_.end(), [&](const Running& r) { return r.peer == peer; });
+  if (static_cast<std::size_t>(of_peer) >= slots_.most() - slots_.most() / 4) return false;
+  auto slot = slots_.take();
+  if (!slot) return false;
   Running& running = threads_.emplace_back();
+  running.peer = peer;
   try {
     running.thread = std::thread(
         [this, &running, held = std::make_shared<Slots::Slot>(*std::move(slot)), work = std::move(work)]() mutable {

@@ -3,24 +3,27 @@
 #include <functional>
 #include <list>
 #include <mutex>
+#include <string>
 #include <thread>
 
 #include "server/jobs/slots.h"
 
 namespace geosis::server::rpc {
 
-/// One thread for each running upload, as many as there are slots. Any thread but those may call any member.
+/// One thread for each running upload, as many as there are slots; one peer never holds the last quarter of them. Any
+/// thread but those may call any member.
 class UploadThreads {
  public:
   explicit UploadThreads(Slots& slots) : slots_(slots) {}
   ~UploadThreads() { join_all(); }
 
   /// False when there are enough already, or the system gives no thread. Work must not throw.
-  bool start(std::function<void()> work);
+  bool start(const std::string& peer, std::function<void()> work);
   void join_all();
 
  private:
   struct Running {
+    std::string peer;
     std::thread thread;
     bool has_ended = false;
   };

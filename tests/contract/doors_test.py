@@ -4,10 +4,13 @@ Each door has a tenant of its own, so each scenario meets the same store behind 
 PYTHONPATH = the contract's messages as protoc makes them.
 """
 import hashlib
+import json
 import shutil
+import socket
 import subprocess
 import tempfile
 import unittest
+import urllib.request
 from pathlib import Path
 
 from grpc_door import GrpcDoor
@@ -346,6 +349,45 @@ class BothDoors(unittest.TestCase):
             for call in (lambda: reader.upload(b"x"), lambda: reader.remove(volume), lambda: reader.extract(b"x", 0, 1),
                          lambda: reader.cancel(created["id"], purge=True)):
                 self.assertEqual(refusal(call).code, "permission_denied")
+
+
+class Operations(unittest.TestCase):
+    def test_calls_are_logged_and_counted(self):
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            admin = f"127.0.0.1:{probe.getsockname()[1]}"
+        with tempfile.TemporaryDirectory() as folder, open(Path(folder) / "log", "w+", encoding="utf-8") as log, \
+                Service(Path(folder) / "store", "--grpc", "127.0.0.1:0", "--admin", admin, "--log-format", "json",
+                        stderr=log) as service:
+            door = GrpcDoor(service.grpc_address, None)
+            door.volumes()
+            refusal(door.volume, ABSENT)
+            with urllib.request.urlopen(f"http://{admin}/metrics") as answer:
+                metrics = answer.read().decode()
+            for status, method in (("OK", "ListVolumes"), ("NOT_FOUND", "GetVolume")):
+                self.assertIn(f'geosis_grpc_call_seconds_count{{method="geosis.v1.VolumeService/{method}",status="{status}"}} 1\n',
+                              metrics)
+            self.assertIn("geosis_grpc_connections 1\n", metrics)
+            with urllib.request.urlopen(f"http://{admin}/livez") as answer:
+                self.assertEqual(answer.status, 200)
+            door.channel.close()
+            service.process.terminate()
+            self.assertEqual(service.process.wait(30), 0)
+            log.seek(0)
+            calls = [line for line in map(json.loads, filter(lambda line: line.startswith("{"), log)) if line["message"] == "call"]
+        self.assertEqual([(call["method"].split("/")[1], call["status"]) for call in calls],
+                         [("ListVolumes", "OK"), ("GetVolume", "NOT_FOUND")])
+        self.assertTrue(all(call["request_id"] and call["tenant"] == "default" for call in calls))
+
+    def test_a_taken_port_is_said(self):
+        with tempfile.TemporaryDirectory() as folder, socket.socket() as taken:
+            taken.bind(("127.0.0.1", 0))
+            taken.listen()
+            address = f"127.0.0.1:{taken.getsockname()[1]}"
+            refused = subprocess.run([GEOSIS, "serve", "--listen", "127.0.0.1:0", "--admin", "", "--grpc", address, "--store",
+                                      folder], capture_output=True, text=True, timeout=60)
+        self.assertEqual(refused.returncode, 1)
+        self.assertRegex(refused.stderr, rf"unavailable: cannot listen at {address}: .*--grpc off")
 
 
 class Admission(unittest.TestCase):

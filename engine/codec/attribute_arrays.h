@@ -12,7 +12,8 @@ template <class Visit>
 Result<void> visit_numbers(const Visit& visit) {
   if (auto done = visit("reliability", &VertexAttributes::reliability); !done) return done;
   if (auto done = visit("body", &VertexAttributes::body); !done) return done;
-  return visit("value", &VertexAttributes::value);
+  if (auto done = visit("value", &VertexAttributes::value); !done) return done;
+  return visit("agreement", &VertexAttributes::agreement);
 }
 
 /// visit(name, member) -> Result<void> for every array.

@@ -119,6 +119,7 @@ Result<GltfMesh> compress(const MeshPart& part, const EncodeOptions& options) {
   add("_BODY", kUnsignedShort, std::span(numbers->short_bodies));
   add("_BODY", kFloat, std::span(numbers->float_bodies));
   add("_VALUE", kFloat, std::span(numbers->values));
+  add("_AGREEMENT", kUnsignedByte, std::span(part.attributes.agreement), true);
   if (!part.attributes.normal.empty()) {
     gltf.attributes.push_back({"NORMAL", kFloat, static_cast<int>(named.size()) + 1, false, "VEC3"});
   }

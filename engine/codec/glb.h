@@ -21,6 +21,7 @@ inline constexpr float kGlbMissingValue = std::numeric_limits<float>::lowest();
 /// Triangles   face outwards by glTF's rule, which looks at the sign of the matrix.
 /// Attributes  _RELIABILITY: normalised unsigned byte, 1 = measured.
 ///             _BODY: unsigned short when all ids fit, else float, for glTF has no 32-bit integers at vertices.
+///             _AGREEMENT: normalised unsigned byte.
 ///             _VALUE: float; NaN and infinities are kGlbMissingValue, also named in the primitive's extras.
 ///             NORMAL, when the level has normals; otherwise readers shade flat, as glTF asks of them.
 ///

@@ -42,7 +42,7 @@ struct EncodeOptions {
 ///             1 + the vertex's rank among the level's seam vertices. A vertex whose triangles in this part form
 ///             several fans is stored once a fan, each time with its id.
 ///             GENERIC, attribute metadata "name" = "reliability" (1 x uint8), "body" (1 x uint32) and "value"
-///             (1 x float32, bit for bit, NaN included), each only when the level has it.
+///             (1 x float32, bit for bit, NaN included) and "agreement" (1 x uint8), each only when the level has it.
 ///             NORMAL, 3 x float32, only when the level has normals: in kNormalBits octahedral bits, so that directions
 ///             change by up to a quarter of a degree; the same at a seam's vertex in all its parts.
 /// Metadata    "transform": the 16 numbers of EncodeOptions::transform as little-endian float64 (a double array;

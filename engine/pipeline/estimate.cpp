@@ -30,6 +30,7 @@ double levels_per_triangle(const ReconstructOptions& options) {
 
 double attributes(const ReconstructOptions& options, bool is_filled) {
   return (options.normals ? 1 : 0) + (options.attributes.body ? 1 : 0) + (options.attributes.value ? 1 : 0) +
+         (options.attributes.agreement && options.grid != GridChoice::given ? 1 : 0) +
          (options.attributes.reliability && is_filled ? 1 : 0);
 }
 

@@ -51,6 +51,9 @@ Result<VertexAttributes> attributes_of(const IndexedMesh& mesh, std::span<const 
     if (!normals) return std::move(normals).error();
     attributes.normal = *std::move(normals);
   }
+  if (sources.agreement != nullptr) {
+    attributes.agreement = agreement_at(*sources.agreement, positions, sources.threads);
+  }
   if (sources.value != nullptr) {
     auto values = sample_at(*sources.value, positions, sources.threads, progress);
     if (!values) return std::move(values).error();

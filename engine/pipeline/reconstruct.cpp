@@ -45,7 +45,8 @@ struct Run {
   const ReconstructOptions& options;
   AffineGeometry space;           ///< from the meshes' coordinates to the requested space
   std::span<const Vec3f> places;  ///< of M0's vertices among the samples, on a grid that is not affine
-  const LayerMap* layers;         ///< of the structural grid; null on the axis grid
+  const StructuralGrid* grid;     ///< null on the axis grid
+  const LayerMap* layers;         ///< of the structural grid, cut to the region
   EncodeOptions encode;
   Progress& progress;
   StageTimings& timings;
@@ -136,6 +137,7 @@ class Levels {
                                                     : samples.samples,
                         .normals_first = is_rectified ? rectified_.first : GridIndex{},
                         .mirrored = run_.space.mirrored(),
+                        .agreement = options.attributes.agreement ? run_.grid : nullptr,
                         .value = options.attributes.value ? run_.input.attribute_volume : nullptr,
                         .places = run_.places,
                         .flat_normals = options.normals && !run_.places.empty(),
@@ -254,6 +256,7 @@ Result<Reconstruction> reconstruct(const ReconstructInput& input, const Reconstr
                             .options = options,
                             .space = space,
                             .places = {},
+                            .grid = grid->structural,
                             .layers = layers ? &*layers : nullptr,
                             .encode = *encode,
                             .progress = progress,

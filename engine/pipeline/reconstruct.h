@@ -30,9 +30,10 @@ namespace geosis {
 /// Raised only when output bytes change; part of every extraction id.
 inline constexpr int kResultVersion = 3;
 
-/// Which values the vertices of every level carry. Reliability is left out where every sample was measured.
+/// Which values the vertices of every level carry. Reliability is left out where every sample was measured, agreement
+/// where the grid is not structural.
 struct AttributeChoice {
-  bool reliability = true, body = false, value = false;
+  bool reliability = true, body = false, value = false, agreement = false;
 
   bool operator==(const AttributeChoice&) const = default;
 };
@@ -98,9 +99,10 @@ struct ReconstructedLevel {
 
 /// Which grid was chosen and why, where the choice was not the given one.
 struct GridReport {
-  DipReport dips;                            ///< what `auto` decides by
-  std::optional<StructureReport> structure;  ///< of the structural grid; unset where samples stay connected as given
-  std::int32_t layers = 0;                   ///< of the structural grid
+  DipReport dips;  ///< what `auto` decides by
+  std::optional<StructureReport> structure =
+      std::nullopt;         ///< of the structural grid; unset where samples stay connected as given
+  std::int32_t layers = 0;  ///< of the structural grid
 };
 
 struct Reconstruction {

@@ -3,10 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/base/progress.h"
 #include "engine/base/result.h"
+#include "engine/base/vec3.h"
 #include "engine/structure/layer_depths.h"
 #include "engine/structure/layer_paths.h"
 #include "engine/structure/scan_dips.h"
@@ -42,6 +44,9 @@ struct StructuralGrid {
   std::vector<std::uint8_t> agreement;
   StructureReport report;
 };
+
+/// How well traces agree around places among the samples, in 1/255: mixed trilinearly from grid.agreement.
+std::vector<std::uint8_t> agreement_at(const StructuralGrid& grid, std::span<const Vec3f> positions, int threads);
 
 struct StructureOptions {
   std::int32_t most_layers_a_sample = 8;  ///< the limit is so many times the volume's samples a trace

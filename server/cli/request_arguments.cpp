@@ -93,7 +93,8 @@ RequestArguments::RequestArguments(CLI::App& command) {
   command.add_option("--largest", largest_, "keep so many bodies, the largest")->type_name("N");
   command.add_option("--seed", seeds_, "keep the bodies that contain a node; may be given several times")
       ->type_name("I,J,K");
-  command.add_option("--attributes", attributes_, "values at the vertices: reliability (default), body, value")
+  command
+      .add_option("--attributes", attributes_, "values at the vertices: reliability (default), body, value, agreement")
       ->type_name("LIST");
   command.add_option("--attribute-volume", attribute_volume_, "survey that the attribute value is of")
       ->type_name("FILE");

@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::size_t kMostSeeds = 1000;
 constexpr std::int64_t kLastNode = std::numeric_limits<std::int32_t>::max() - 1;
-constexpr const char* kAttributeNames[] = {"reliability", "body", "value"};
+constexpr const char* kAttributeNames[] = {"reliability", "body", "value", "agreement"};
 
-std::array<bool*, 3> flags_of(AttributeChoice& choice) {
-  return {&choice.reliability, &choice.body, &choice.value};
+std::array<bool*, 4> flags_of(AttributeChoice& choice) {
+  return {&choice.reliability, &choice.body, &choice.value, &choice.agreement};
 }
 
 /// A number in [min, infinity), or (min, infinity) when `above`; nullopt when absent or null.
@@ -115,11 +115,13 @@ void read_attributes(ObjectReader& request, ReconstructOptions& options) {
   if (const Json* value = request.find("attributes")) {
     options.attributes = {.reliability = false, .body = false, .value = false};
     const std::string pointer = request.pointer_to("attributes");
-    if (!value->is_array()) request.refuse(pointer, *value, "a list of \"reliability\", \"body\" and \"value\"");
+    if (!value->is_array())
+      request.refuse(pointer, *value, "a list of \"reliability\", \"body\", \"value\" and \"agreement\"");
     for (std::size_t n = 0; value->is_array() && n < value->size(); ++n) {
       const auto* const name = std::find(std::begin(kAttributeNames), std::end(kAttributeNames), (*value)[n]);
       if (name == std::end(kAttributeNames)) {
-        request.refuse(pointer + "/" + std::to_string(n), (*value)[n], "\"reliability\", \"body\" or \"value\"");
+        request.refuse(pointer + "/" + std::to_string(n), (*value)[n],
+                       "\"reliability\", \"body\", \"value\" or \"agreement\"");
         continue;
       }
       *flags_of(options.attributes)[static_cast<std::size_t>(name - kAttributeNames)] = true;

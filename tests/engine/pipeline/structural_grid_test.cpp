@@ -200,6 +200,35 @@ TEST(StructuralSurface, LooksOutwardsAndHasOneVolumeInEveryWorld) {
   }
 }
 
+TEST(StructuralSurface, TellsHowWellTracesAgreeAtItsVertices) {
+  const test::LayeredTruth truth({.shape = {40, 40, 80}, .layering = test::Layering::faulted});
+  const auto field = truth.samples();
+  const auto volume = make_bricked_volume(field.shape, field.samples);
+  ReconstructOptions options{.range = {0.4f, kInfinity},
+                             .grid = GridChoice::structural,
+                             .levels = by_ratio({1, 0.25}),
+                             .attributes = {.agreement = true}};
+  for (const bool index_space : {false, true}) {
+    options.index_space = index_space;
+    const Reconstruction result = run(*volume, options);
+    for (const ReconstructedLevel& level : result.levels) {
+      const auto& agreement = level.attributes.agreement;
+      ASSERT_EQ(agreement.size(), level.lod.mesh.positions.size());
+      EXPECT_LT(*std::min_element(agreement.begin(), agreement.end()), 200);
+      double sum = 0;
+      for (const std::uint8_t a : agreement) sum += a;
+      EXPECT_GT(sum / static_cast<double>(agreement.size()), 215);
+      std::vector<std::span<const std::byte>> parts;
+      for (const EncodedPart& part : level.encoded.parts) parts.emplace_back(part.bytes);
+      const auto decoded = decode_level(parts);
+      ASSERT_TRUE(decoded);
+      EXPECT_EQ(decoded->attributes.agreement.size(), decoded->mesh.positions.size());
+    }
+  }
+  options.grid = GridChoice::given;
+  EXPECT_TRUE(run(*volume, options).levels[0].attributes.agreement.empty());
+}
+
 TEST(AutomaticGrid, LooksAtDipsAndPeriod) {
   EXPECT_FALSE(prefers_structure({}));
   EXPECT_FALSE(prefers_structure({.period = 16, .dips = {DipQuantiles{0, 1.9, 3}, DipQuantiles{0, 0.1, 1}}}));

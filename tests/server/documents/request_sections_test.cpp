@@ -94,7 +94,7 @@ TEST(RequestAttributes, NeedTheVolumeThatAValueIsOf) {
   expect_refused(R"("attribute_volume": "abc")",
                  "request /attribute_volume: \"abc\"; expected null, as \"attributes\" does not ask for \"value\"");
   expect_refused(R"("attributes": ["colour"])",
-                 "request /attributes/0: \"colour\"; expected \"reliability\", \"body\" or \"value\"");
+                 "request /attributes/0: \"colour\"; expected \"reliability\", \"body\", \"value\" or \"agreement\"");
 }
 
 TEST(RequestVelocity, IsMetresASecond) {

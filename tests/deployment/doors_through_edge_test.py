@@ -11,7 +11,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "contract"))
 
 import doors_test  # noqa: E402
 import grpc  # noqa: E402
-from doors_test import *  # noqa: E402,F401,F403  (its test cases)
+from doors_test import BothDoors  # noqa: E402,F401  (its tests)
 from edge import Edge, need_nginx  # noqa: E402
 from geosis.v1 import volume_pb2, volume_pb2_grpc  # noqa: E402
 

@@ -26,6 +26,8 @@ driver = "$driver"
 graphroot = "$work/storage-$driver"
 runroot = "$work/run"
 TEXT
+# Buildah leaves its storage mounted on itself; then the build folder could not be removed.
+trap 'umount "$work/storage-$driver/overlay" 2>/dev/null || true' EXIT
 echo '{"default": [{"type": "insecureAcceptAnything"}]}' >"$work/policy.json"
 export CONTAINERS_STORAGE_CONF=$work/storage.conf BUILDAH_ISOLATION=chroot BUILDAH_FORMAT=docker
 base=docker.io/library/debian:bookworm-slim

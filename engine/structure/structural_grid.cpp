@@ -77,7 +77,8 @@ Result<LayerDepths> plan_layers(const DipField& field, const PaintOrder& order, 
   }
   LayerDepths depths{.shape = shape, .spacing = choose_spacing(shape, layers, options)};
   depths.first = -(margins->above + depths.spacing - 1) / depths.spacing * depths.spacing;
-  depths.layers = static_cast<std::int32_t>((layers - margins->above - depths.first - 2) / depths.spacing + 2);
+  const std::int64_t painted = (layers - margins->above - depths.first - 2) / depths.spacing + 2;
+  depths.layers = static_cast<std::int32_t>(std::max<std::int64_t>(painted, 2));  // places lie between two
   return depths;
 }
 

@@ -12,12 +12,11 @@ TraceOrderWriter::TraceOrderWriter(BrickWriter& writer)
                 static_cast<std::size_t>(writer.layout().grid().samples)) {}
 
 Result<void> TraceOrderWriter::put(std::int32_t column, std::int32_t i, std::int32_t j,
-                                   std::span<const float> samples) {
+                                   std::span<const float* const> traces) {
   const BrickLayout& layout = writer_.layout();
-  const auto trace = static_cast<std::size_t>(layout.shape().samples);
   const std::int64_t crosslines = this->crosslines(column);
   const std::int64_t begin = i * crosslines + (j - first_crossline(column));  // in traces of the column
-  const std::int64_t end = begin + static_cast<std::int64_t>(samples.size() / trace);
+  const std::int64_t end = begin + static_cast<std::int64_t>(traces.size());
   // A shared inline ends one layer before it begins the next.
   GridIndex place{bricks_with(i, layout.grid().inlines).first, column, 0};
   for (; place.i < layout.grid().inlines; ++place.i) {
@@ -25,35 +24,36 @@ Result<void> TraceOrderWriter::put(std::int32_t column, std::int32_t i, std::int
     const std::int64_t from = std::max(begin, first);
     const std::int64_t to = std::min(end, first + layout.extent(place).inlines * crosslines);
     if (from >= to) break;
-    const auto part =
-        samples.subspan(static_cast<std::size_t>(from - begin) * trace, static_cast<std::size_t>(to - from) * trace);
+    const auto part = traces.subspan(static_cast<std::size_t>(from - begin), static_cast<std::size_t>(to - from));
     if (auto done = put_in_layer(place, from - first, part); !done) return done;
   }
   return {};
 }
 
-Result<void> TraceOrderWriter::put_in_layer(GridIndex place, std::int64_t first_row, std::span<const float> samples) {
+Result<void> TraceOrderWriter::put_in_layer(GridIndex place, std::int64_t first_row,
+                                            std::span<const float* const> traces) {
   const BrickLayout& layout = writer_.layout();
   const GridShape extent = layout.extent(place);
   for (; place.k < layout.grid().samples; ++place.k)
-    if (auto done = put_in_brick(place, first_row, samples); !done) return done;
-  const auto traces = static_cast<std::int64_t>(samples.size()) / layout.shape().samples;
-  if (first_row + traces == std::int64_t{extent.inlines} * extent.crosslines) {
+    if (auto done = put_in_brick(place, first_row, traces); !done) return done;
+  if (first_row + static_cast<std::int64_t>(traces.size()) == std::int64_t{extent.inlines} * extent.crosslines) {
     place.k = 0;
     writer_.start_writing(layout.number(place), static_cast<std::size_t>(layout.grid().samples));
   }
   return {};
 }
 
-Result<void> TraceOrderWriter::put_in_brick(GridIndex place, std::int64_t first_row, std::span<const float> samples) {
+Result<void> TraceOrderWriter::put_in_brick(GridIndex place, std::int64_t first_row,
+                                            std::span<const float* const> traces) {
   const BrickLayout& layout = writer_.layout();
   const std::size_t brick = layout.number(place);
-  const auto trace = static_cast<std::size_t>(layout.shape().samples);
   const auto row = static_cast<std::size_t>(layout.extent(place).samples);
-  std::vector<float> rows(samples.size() / trace * row);
-  const float* from = samples.data() + layout.first_node(place).k;
-  for (float* to = rows.data(); to != rows.data() + rows.size(); to += row, from += trace)
-    std::memcpy(to, from, row * sizeof(float));
+  std::vector<float> rows(traces.size() * row);
+  float* to = rows.data();
+  for (const float* trace : traces) {
+    std::memcpy(to, trace + layout.first_node(place).k, row * sizeof(float));
+    to += row;
+  }
 
   auto& indexer = indexers_[static_cast<std::size_t>(place.j) * static_cast<std::size_t>(layout.grid().samples) +
                             static_cast<std::size_t>(place.k)];

@@ -16,7 +16,7 @@ namespace geosis {
 /// columns are independent of each other.
 ///
 ///     TraceOrderWriter traces(writer);
-///     parallel_for(traces.columns(), ...  traces.put(column, i, j, samples));   // all traces of the column, in order
+///     parallel_for(traces.columns(), ...  traces.put(column, i, j, pointers));   // all traces of the column, in order
 ///
 /// memory  0.6 KB for each brick of one layer, once its first rows are there; 16 KB for each call.
 class TraceOrderWriter {
@@ -29,13 +29,13 @@ class TraceOrderWriter {
   std::int32_t first_crossline(std::int32_t column) const { return column * kBrickCells; }
   std::int32_t crosslines(std::int32_t column) const { return writer_.layout().extent({0, column, 0}).crosslines; }
 
-  /// Whole traces of the column, from inline i and crossline j on: its crosslines, then those of the next inline. Many
-  /// at once are written in longer pieces. errors: unavailable, no_space.
-  Result<void> put(std::int32_t column, std::int32_t i, std::int32_t j, std::span<const float> samples);
+  /// Whole traces of the column, each where it lies, from inline i and crossline j on: the column's crosslines, then
+  /// those of the next inline. Many at once are written in longer pieces. errors: unavailable, no_space.
+  Result<void> put(std::int32_t column, std::int32_t i, std::int32_t j, std::span<const float* const> traces);
 
  private:
-  Result<void> put_in_layer(GridIndex place, std::int64_t first_row, std::span<const float> samples);
-  Result<void> put_in_brick(GridIndex place, std::int64_t first_row, std::span<const float> samples);
+  Result<void> put_in_layer(GridIndex place, std::int64_t first_row, std::span<const float* const> traces);
+  Result<void> put_in_brick(GridIndex place, std::int64_t first_row, std::span<const float* const> traces);
 
   BrickWriter& writer_;
   std::vector<std::optional<BrickIndexer>> indexers_;  ///< of the bricks of one layer that have begun

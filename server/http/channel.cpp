@@ -50,6 +50,11 @@ std::uint32_t Channel::write_event() const {
   return EPOLLOUT;
 }
 
+void Channel::wake_at(std::size_t bytes) {
+  const int least = static_cast<int>(std::min<std::size_t>(bytes, 1 << 20));
+  ::setsockopt(socket_.number(), SOL_SOCKET, SO_RCVLOWAT, &least, sizeof least);
+}
+
 void Channel::interrupt() {
   ::shutdown(socket(), SHUT_RDWR);
 }

@@ -39,6 +39,9 @@ class Channel {
   /// The epoll event after which a receive() or send() that was blocked may go on.
   virtual std::uint32_t read_event() const;
   virtual std::uint32_t write_event() const;
+  /// Asks that read_event() comes only when so many bytes are here, or the end: whoever reads much is woken less. A
+  /// channel that cannot tell ignores it.
+  virtual void wake_at(std::size_t bytes);
 
   /// Ends both directions at once.
   void interrupt();

@@ -12,6 +12,7 @@ namespace geosis::server::http {
 namespace {
 
 constexpr std::size_t kWireBytes = 64 * 1024;
+constexpr std::size_t kWakeBytes = 1024 * 1024;
 constexpr int kPollMilliseconds = 250;
 
 }  // namespace
@@ -87,6 +88,9 @@ Result<std::size_t> UploadBody::receive(std::span<std::byte> into) {
 
 Result<void> UploadBody::wait_for_bytes() {
   const auto start = std::chrono::steady_clock::now();
+  // Of a chunked body nobody knows how much is to come.
+  const std::size_t wanted = is_chunked_ ? 1 : static_cast<std::size_t>(std::min<std::uint64_t>(left_, kWakeBytes));
+  if (wanted != wake_at_) channel_.wake_at(wake_at_ = wanted);
   pollfd event{channel_.socket(), static_cast<short>(channel_.read_event()), 0};  // POLLIN is EPOLLIN
   ::poll(&event, 1, kPollMilliseconds);
   if (rate_.add(0, std::chrono::steady_clock::now() - start)) return {};

@@ -35,6 +35,7 @@ class UploadBody final : public BodyReader {
   bool is_chunked_;
   ChunkDecoder decoder_;
   RateGuard rate_;
+  std::size_t wake_at_ = 1;     ///< what the channel was asked for
   std::optional<Error> error_;  ///< stays: a body that failed once goes on failing
 };
 

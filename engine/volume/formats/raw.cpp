@@ -89,46 +89,67 @@ class RawTraces {
     for (std::int64_t i = first / crosslines; i * crosslines < last; ++i) {
       const std::int64_t stop = std::min(last, i * crosslines + end);
       for (std::int64_t trace = std::max(first, i * crosslines + begin); trace < stop; ++trace) {
-        if (run.samples.empty()) run.first = trace;
-        decode(batch, trace, column, run.samples);
-        if (run.samples.size() < kSamplesAtOnce) continue;
+        if (run.traces.empty()) run.first = trace;
+        add(batch, trace, column, run);
+        if (std::ssize(run.traces) * layout_.shape.samples < kSamplesAtOnce) continue;
         if (auto put = put_run(column, run); !put) return put;
       }
     }
-    return run.samples.empty() ? Result<void>{} : put_run(column, run);
+    return run.traces.empty() ? Result<void>{} : put_run(column, run);
   }
 
  private:
-  static constexpr std::size_t kSamplesAtOnce = 1 << 20;  // 4 MiB
+  static constexpr std::int64_t kSamplesAtOnce = 1 << 20;  // 4 MiB
 
   /// Traces of one column that follow each other.
   struct Run {
     std::int64_t first = 0;
-    std::vector<float> samples;
+    std::vector<const float*> traces;  ///< in the batch where it holds them as they are, else in `decoded`
+    std::vector<float> decoded;        ///< never grows beyond what was reserved
   };
 
   Result<void> put_run(std::int32_t column, Run& run) {
     const std::int64_t crosslines = layout_.shape.crosslines;
     auto put = writer_.put(column, static_cast<std::int32_t>(run.first / crosslines),
-                           static_cast<std::int32_t>(run.first % crosslines), run.samples);
-    run.samples.clear();
+                           static_cast<std::int32_t>(run.first % crosslines), run.traces);
+    run.traces.clear();
+    run.decoded.clear();
     return put;
   }
 
-  /// Appends the trace. The last crossline of a column counts for the next one.
-  void decode(const RecordBatch& batch, std::int64_t trace, std::int32_t column, std::vector<float>& samples) {
-    const auto length = static_cast<std::size_t>(layout_.shape.samples);
+  void add(const RecordBatch& batch, std::int64_t trace, std::int32_t column, Run& run) {
     const std::uint64_t bytes = layout_.bytes_of(layout_.shape.samples);
-    samples.resize(samples.size() + length);
-    const auto line = std::span(samples).last(length);
-    decode_samples(layout_.code, layout_.big_endian,
-                   batch.bytes.subspan((static_cast<std::uint64_t>(trace) - batch.first) * bytes, bytes), line);
-    const SampleCounts counts = layout_.null.clean(line);
+    const auto stored = batch.bytes.subspan((static_cast<std::uint64_t>(trace) - batch.first) * bytes, bytes);
+    SampleCounts counts;
+    if (const float* plain = plain_samples(stored)) {
+      run.traces.push_back(plain);
+    } else {
+      const std::span<float> line = room_for_trace(run.decoded);
+      decode_samples(layout_.code, layout_.big_endian, stored, line);
+      counts = layout_.null.clean(line);
+      run.traces.push_back(line.data());
+    }
+    // The last crossline of a column counts for the next one.
     const bool is_own =
         column + 1 == writer_.columns() || trace % layout_.shape.crosslines < writer_.first_crossline(column + 1);
     if (!is_own) return;
     tally_.add_infinite(counts.infinite);
     tally_.add_trace(layout_.shape.samples, counts.missing);
+  }
+
+  /// The trace itself, if it is stored as we hold it and nothing in it is missing; else null.
+  const float* plain_samples(std::span<const std::byte> stored) const {
+    if (layout_.code != SampleCode::ieee32 || layout_.big_endian) return nullptr;
+    if (reinterpret_cast<std::uintptr_t>(stored.data()) % alignof(float) != 0) return nullptr;
+    const auto* samples = reinterpret_cast<const float*>(stored.data());
+    return layout_.null.keeps({samples, stored.size() / sizeof(float)}) ? samples : nullptr;
+  }
+
+  std::span<float> room_for_trace(std::vector<float>& decoded) const {
+    const auto length = static_cast<std::size_t>(layout_.shape.samples);
+    if (decoded.empty()) decoded.reserve(static_cast<std::size_t>(kSamplesAtOnce) + length);
+    decoded.resize(decoded.size() + length);
+    return std::span(decoded).last(length);
   }
 
   const RawLayout& layout_;

@@ -11,7 +11,7 @@
 namespace geosis {
 namespace {
 
-constexpr std::uint64_t kBatchBytes = 8 << 20;
+constexpr std::uint64_t kBatchBytes = 16 << 20;
 
 Error cancelled() {
   return {ErrorCode::cancelled, "cancelled"};

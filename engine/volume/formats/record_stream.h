@@ -38,7 +38,7 @@ RecordBatch share_of(const RecordBatch& batch, std::size_t part, std::size_t par
 /// thread reads, from the first byte to the last in order, so a file that still arrives may be read.
 ///
 /// returns  SHA-256 of all bytes of the file, hexadecimal.
-/// memory   two batches of 8 MiB, or two records if they are longer.
+/// memory   two batches of 16 MiB, or two records if they are longer.
 /// errors   cancelled, and those of reading and of the visitor.
 Result<std::string> stream_records(const ByteSource& source, const Records& records, const RecordVisitor& visitor,
                                    int threads, Progress& progress);

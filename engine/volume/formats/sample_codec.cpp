@@ -3,6 +3,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "engine/volume/formats/byte_reader.h"
@@ -97,7 +98,11 @@ void decode_samples(SampleCode code, bool big_endian, std::span<const std::byte>
     case SampleCode::ibm32:
       return convert_all<std::uint32_t>(big_endian, from, samples, from_ibm);
     case SampleCode::ieee32:
-      return convert_all<std::uint32_t>(big_endian, from, samples, from_ieee32);
+      if (!big_endian) {  // as they are
+        if (!samples.empty()) std::memcpy(samples.data(), from, samples.size_bytes());
+        return;
+      }
+      return convert_all<std::uint32_t, true>(from, samples, from_ieee32);
     case SampleCode::ieee64:
       return convert_all<std::uint64_t>(big_endian, from, samples, from_ieee64);
     case SampleCode::int8:
@@ -145,9 +150,13 @@ static bool are_plain(std::span<const float> samples) {
   return any != 0 && room >= 0;
 }
 
+bool NullValue::keeps(std::span<const float> samples) const {
+  return !set_ && are_plain(samples);
+}
+
 SampleCounts NullValue::clean(std::span<float> samples) const {
   constexpr float largest = std::numeric_limits<float>::max();
-  if (!set_ && are_plain(samples)) return {.all_zero = false};
+  if (keeps(samples)) return {.all_zero = false};
   SampleCounts counts;
   bool any_nonzero = false;
   for (float& value : samples) {

@@ -46,6 +46,8 @@ class NullValue {
 
   /// Turns null and infinite samples into NaN and counts.
   SampleCounts clean(std::span<float> samples) const;
+  /// Whether clean() would surely change none of them; they are not all zero then.
+  bool keeps(std::span<const float> samples) const;
 
  private:
   bool set_ = false;

@@ -121,13 +121,12 @@ TEST(Bricks, HoldTracesWrittenInOrderInPiecesOfAnyLength) {
       const std::int32_t begin = traces.first_crossline(column), crosslines = traces.crosslines(column);
       for (std::int32_t row = 0, count = 0; row < shape.inlines * crosslines; row += count) {
         count = std::min<std::int32_t>(1 + static_cast<std::int32_t>(random() % 200), shape.inlines * crosslines - row);
-        std::vector<float> samples;
+        std::vector<const float*> pointers;
         for (std::int32_t r = row; r < row + count; ++r) {
           const std::int64_t trace = std::int64_t{r / crosslines} * shape.crosslines + begin + r % crosslines;
-          const auto from = volume.samples.begin() + trace * shape.samples;
-          samples.insert(samples.end(), from, from + shape.samples);
+          pointers.push_back(volume.samples.data() + trace * shape.samples);
         }
-        ASSERT_TRUE(traces.put(column, row / crosslines, begin + row % crosslines, samples));
+        ASSERT_TRUE(traces.put(column, row / crosslines, begin + row % crosslines, pointers));
       }
     }
     NoProgress unwatched;

@@ -170,7 +170,7 @@ TEST_F(ReplicasTest, AResultWithAMissingPartIsComputedAgain) {
 TEST_F(ReplicasTest, WhatIsLeftWithoutRequestOrVolumeIsCollected) {
   Service service(*store, reconstruct, 2, kQuick);
   const std::string id = create(service), volume = (*service.extractions.find(id))->identity().volume;
-  (*service.extractions.find(id))->wait_for(30s);
+  (*service.extractions.find(id))->wait_for_work(30s);  // its lease is gone then
   const std::size_t whole = store->list("default/", "", 1000)->size();
   const std::string left = "default/extractions/" + std::string(64, 'e');
   ASSERT_TRUE(store->put(left + "/parts/0.0.drc", {}));

@@ -175,7 +175,7 @@ void Connection::begin_upload(Head head) {
   state_ = State::starting_upload;
   deadline_ = Clock::now() + owner_.limits().head_deadline;
   if (head.expects_continue) invite();
-  upload_.emplace(std::move(head), *std::exchange(resolved_, std::nullopt));
+  upload_ = UploadStart{std::move(head), *std::exchange(resolved_, std::nullopt)};
 }
 
 void Connection::read_upload_start() {

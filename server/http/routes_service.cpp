@@ -92,7 +92,7 @@ void add_service_routes(Router& router, const HealthChecks& health, const std::f
 
   for (auto& [name, content] : read_page(page)) {
     const std::string type = media_type(std::filesystem::path(name).extension().string());
-    const auto serve = [type, content](const Request&) { return text_reply(type.c_str(), content); };
+    const auto serve = [type, content = content](const Request&) { return text_reply(type.c_str(), content); };
     if (name == "index.html") router.get("/", serve);
     router.get(pattern_of(name), serve);
   }

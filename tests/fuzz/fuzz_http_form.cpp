@@ -14,7 +14,7 @@ namespace {
 
 using geosis::Result;
 
-class PiecewiseBody final : public geosis::server::http::BodyReader {
+class PiecewiseBody final : public geosis::server::BodyReader {
  public:
   PiecewiseBody(std::string_view bytes, std::size_t piece) : left_(bytes), piece_(piece) {}
   Result<std::size_t> read(std::span<std::byte> into) override {

@@ -24,8 +24,6 @@ class BrickIndexer {
 
   /// The next rows along the sample axis, whole ones.
   void add_rows(std::span<const float> samples);
-  /// Rows that were added.
-  std::int64_t rows() const { return rows_; }
   bool is_complete() const { return rows_ == std::int64_t{extent_.inlines} * extent_.crosslines; }
   /// After all rows.
   StoredSummary summary() const;
@@ -38,7 +36,7 @@ class BrickIndexer {
   GridShape extent_;
   std::span<ValueRange, kBlocksPerBrick> blocks_;
   std::unique_ptr<XXH3_state_s, FreeChecksum> checksum_;
-  std::int64_t rows_ = 0;
+  std::int64_t rows_ = 0;  ///< that were added
   std::int64_t missing_ = 0;
 };
 

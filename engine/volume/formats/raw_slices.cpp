@@ -52,8 +52,8 @@ class SliceMover {
       // The last slice of a layer is the first one of the next: both have it.
       const std::int32_t begin = b == 0 ? 0 : kBrickCells * b + 1;
       const std::int32_t end = b == layers ? 0 : std::min(kBrickCells * (b + 1) + 1, shape.samples);
-      std::jthread turning;
       Result<void> turned;
+      std::jthread turning;  // ends before what it writes to
       if (b > 0) turning = std::jthread([this, b, &turned] { turned = turn_layer(b - 1); });
       for (std::int32_t k = begin; k < end && received; ++k) {
         received = progress.cancelled() ? Error{ErrorCode::cancelled, "cancelled"} : receive(k);

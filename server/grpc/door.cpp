@@ -1,7 +1,5 @@
 #include "server/grpc/door.h"
 
-#include <fstream>
-#include <iterator>
 #include <mutex>
 #include <utility>
 
@@ -28,24 +26,6 @@ constexpr int kLargestMetadata = 16 * 1024;
 constexpr std::size_t kMemory = std::size_t{256} << 20;  // beyond, gRPC reads more slowly
 constexpr int kReflectionThreads = 8;                    // its service is the one that holds a thread for each call
 constexpr std::uint64_t kUploadRate = 16 * 1024;
-
-Result<std::string> read_pem(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(file), {}};
-  if (!file.is_open() || text.empty()) return Error{ErrorCode::invalid_argument, path + ": cannot be read"};
-  return text;
-}
-
-Result<std::shared_ptr<grpc::ServerCredentials>> credentials(const DoorOptions& options) {
-  if (options.tls_certificate.empty()) return grpc::InsecureServerCredentials();
-  auto certificate = read_pem(options.tls_certificate);
-  if (!certificate) return std::move(certificate).error();
-  auto key = read_pem(options.tls_key);
-  if (!key) return std::move(key).error();
-  grpc::SslServerCredentialsOptions tls;
-  tls.pem_key_cert_pairs.push_back({*std::move(key), *std::move(certificate)});
-  return grpc::SslServerCredentials(tls);
-}
 
 /// A probe's way in: addresses that stand for all of a machine's are asked at loopback.
 std::string probe_target(const std::string& listen, std::uint16_t port) {
@@ -119,7 +99,7 @@ class Door::Running {
   ~Running() { stop(); }
 
   Result<void> start(const DoorOptions& options) {
-    auto secured = credentials(options);
+    auto secured = door_credentials(options.tls);
     if (!secured) return std::move(secured).error();
     auto listener = Listener::open(options.listen);
     if (!listener) return std::move(listener).error();
@@ -128,22 +108,22 @@ class Door::Running {
     builder.RegisterService(&volumes_);
     builder.RegisterService(&extractions_);
     taker_ = builder.experimental().AddExternalConnectionAcceptor(
-        grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD, *std::move(secured));
+        grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD, secured->server);
     server_ = builder.BuildAndStart();
-    if (!server_ && !options.tls_certificate.empty()) {
+    if (!server_ && !options.tls.certificate.empty()) {
       return Error{ErrorCode::invalid_argument,
-                   "TLS: gRPC does not take " + options.tls_certificate + " and " + options.tls_key};
+                   "TLS: gRPC does not take " + options.tls.certificate + " and " + options.tls.key};
     }
     if (!server_) return Error{ErrorCode::internal, "gRPC did not start"};
     set_serving(true);
     acceptor_ = std::make_unique<Acceptor>(
         *std::move(listener), Acceptor::Limits{options.connections, options.connections_per_peer},
         [this](Descriptor socket) { take(std::move(socket)); }, [this] { room_.open.end_late_ones(); });
-    const auto may_be_full = [this, most = std::min(options.connections, options.connections_per_peer)] {
-      return acceptor_->connections() >= most;
-    };
-    probe_ = std::make_unique<SelfProbe>(probe_target(options.listen, acceptor_->port()),
-                                         !options.tls_certificate.empty(), options.probe_interval, may_be_full);
+    probe_ = std::make_unique<SelfProbe>(probe_target(options.listen, acceptor_->port()), secured->own_client,
+                                         options.probe_interval,
+                                         [this, most = std::min(options.connections, options.connections_per_peer)] {
+                                           return acceptor_->connections() >= most;
+                                         });
     return {};
   }
 
@@ -151,6 +131,14 @@ class Door::Running {
   std::size_t connections() const { return acceptor_->connections(); }
   std::size_t calls() const { return room_.open.count(); }
   std::optional<std::string> not_alive() const { return is_draining_ ? std::nullopt : probe_->problem(); }
+
+  void set_serving(bool is_serving) {
+    grpc::HealthCheckServiceInterface* const health = server_->GetHealthCheckService();
+    health->SetServingStatus(is_serving);
+    for (const char* service : {"geosis.v1.VolumeService", "geosis.v1.ExtractionService"}) {
+      health->SetServingStatus(service, is_serving);
+    }
+  }
 
   void drain(std::chrono::milliseconds grace) {
     if (is_draining_.exchange(true)) return;
@@ -167,14 +155,6 @@ class Door::Running {
   }
 
  private:
-  void set_serving(bool is_serving) {
-    grpc::HealthCheckServiceInterface* const health = server_->GetHealthCheckService();
-    health->SetServingStatus(is_serving);
-    for (const char* service : {"geosis.v1.VolumeService", "geosis.v1.ExtractionService"}) {
-      health->SetServingStatus(service, is_serving);
-    }
-  }
-
   void take(Descriptor socket) {
     grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters connection;
     connection.fd = socket.release();
@@ -213,6 +193,9 @@ std::size_t Door::calls() const {
 }
 std::optional<std::string> Door::not_alive() const {
   return running_->not_alive();
+}
+void Door::set_not_serving() {
+  running_->set_serving(false);
 }
 void Door::drain(std::chrono::milliseconds grace) {
   running_->drain(grace);

@@ -9,14 +9,15 @@
 
 #include "engine/base/result.h"
 #include "server/app/services.h"
+#include "server/grpc/door_tls.h"
 #include "server/grpc/gate.h"
 #include "server/jobs/slots.h"
 
 namespace geosis::server::rpc {
 
 struct DoorOptions {
-  std::string listen = "127.0.0.1:8081";           ///< "host:port"; port 0 = any that is free
-  std::string tls_certificate = {}, tls_key = {};  ///< files in PEM; empty = plain HTTP/2
+  std::string listen = "127.0.0.1:8081";  ///< "host:port"; port 0 = any that is free
+  TlsFiles tls = {};                      ///< empty = plain HTTP/2
   std::size_t connections = 256, connections_per_peer = 64;
   int streams_per_connection = 64;
   std::size_t handler_threads = 8;
@@ -54,6 +55,8 @@ class Door {
   /// Why it is dead and should be started again; nothing while it answers its own questions.
   std::optional<std::string> not_alive() const;
 
+  /// Health says NOT_SERVING; all is served as before, for those who have not asked yet.
+  void set_not_serving();
   /// Health says NOT_SERVING, and no connections and calls are taken any more; running ones may finish within `grace`,
   /// the rest is cancelled.
   void drain(std::chrono::milliseconds grace);

@@ -5,9 +5,6 @@
 #include <grpcpp/client_context.h>
 #include <grpcpp/create_channel.h>
 #include <grpcpp/generic/generic_stub.h>
-#include <grpcpp/security/credentials.h>
-#include <grpcpp/security/tls_certificate_verifier.h>
-#include <grpcpp/security/tls_credentials_options.h>
 
 namespace geosis::server::rpc {
 namespace {
@@ -15,22 +12,12 @@ namespace {
 constexpr std::chrono::seconds kPatience{5};
 constexpr int kDeadAfter = 3;  // failures in a row
 
-/// We know whom we ask: the certificate, which is for other names, is not judged.
-std::shared_ptr<grpc::ChannelCredentials> credentials(bool is_tls) {
-  if (!is_tls) return grpc::InsecureChannelCredentials();
-  grpc::experimental::TlsChannelCredentialsOptions options;
-  options.set_verify_server_certs(false);
-  options.set_check_call_host(false);
-  options.set_certificate_verifier(std::make_shared<grpc::experimental::NoOpCertificateVerifier>());
-  return grpc::experimental::TlsCredentials(options);
-}
-
 }  // namespace
 
-SelfProbe::SelfProbe(std::string target, bool is_tls, std::chrono::milliseconds interval,
-                     std::function<bool()> may_be_full)
+SelfProbe::SelfProbe(std::string target, std::shared_ptr<grpc::ChannelCredentials> credentials,
+                     std::chrono::milliseconds interval, std::function<bool()> may_be_full)
     : target_(std::move(target)),
-      is_tls_(is_tls),
+      credentials_(std::move(credentials)),
       interval_(interval),
       may_be_full_(std::move(may_be_full)),
       thread_([this] { run(); }) {}
@@ -69,7 +56,7 @@ bool SelfProbe::ask() const {
   grpc::ChannelArguments arguments;
   arguments.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, 1);  // a connection of its own, each time
   arguments.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
-  const auto channel = grpc::CreateCustomChannel(target_, credentials(is_tls_), arguments);
+  const auto channel = grpc::CreateCustomChannel(target_, credentials_, arguments);
   grpc::GenericStub stub(channel);
   grpc::ClientContext context;
   context.set_deadline(std::chrono::system_clock::now() + kPatience);

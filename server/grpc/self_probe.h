@@ -11,6 +11,8 @@
 #include <string>
 #include <thread>
 
+#include <grpcpp/security/credentials.h>
+
 namespace geosis::server::rpc {
 
 /// Asks the door for its health as a client would, over a connection of its own, from time to time: a gRPC server that
@@ -18,7 +20,8 @@ namespace geosis::server::rpc {
 class SelfProbe {
  public:
   /// may_be_full   whether a failure may come from too many clients, which is no reason to start again.
-  SelfProbe(std::string target, bool is_tls, std::chrono::milliseconds interval, std::function<bool()> may_be_full);
+  SelfProbe(std::string target, std::shared_ptr<grpc::ChannelCredentials> credentials,
+            std::chrono::milliseconds interval, std::function<bool()> may_be_full);
   ~SelfProbe();
 
   /// Why the door is dead; nothing while it answers.
@@ -29,7 +32,7 @@ class SelfProbe {
   bool ask() const;
 
   const std::string target_;
-  const bool is_tls_;
+  const std::shared_ptr<grpc::ChannelCredentials> credentials_;
   const std::chrono::milliseconds interval_;
   const std::function<bool()> may_be_full_;
   std::atomic<int> failures_{0};  ///< in a row

@@ -61,12 +61,14 @@ Result<std::unique_ptr<rpc::Door>> start_grpc(const ServeOptions& options, const
   raise_descriptor_limit();
   rpc::DoorOptions door;
   door.listen = options.grpc;
-  door.tls_certificate = options.tls_certificate;
-  door.tls_key = options.tls_key;
+  door.tls = {.certificate = options.tls_certificate,
+              .key = options.tls_key,
+              .client_authorities = options.grpc_client_authorities};
   door.upload_bytes = options.max_body_bytes;
   door.connections = std::max(options.connections / kHttpToGrpcConnections, std::size_t{1});
   door.connections_per_peer = std::max(options.connections_per_peer / kHttpToGrpcConnections, std::size_t{1});
   door.patience = options.patience;
+  door.probe_interval = options.probe_interval;
   auto started =
       rpc::Door::start(door, {.services_of = [&tenants](const std::string& tenant) { return tenants.services(tenant); },
                               .gate = gate,

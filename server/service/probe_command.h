@@ -4,8 +4,8 @@
 
 namespace geosis::server {
 
-/// `geosis probe URL`: whether a server answers 2xx, for images and hosts without an HTTP client. Without TLS: the
-/// admin door never has it.
+/// `geosis probe URL`: whether a server answers 2xx, for images and hosts without an HTTP client. Over TLS the
+/// certificate must be for the host and of an authority that the system knows, unless flags say otherwise.
 Command add_probe_command(CLI::App& app);
 
 }  // namespace geosis::server

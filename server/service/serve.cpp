@@ -187,8 +187,11 @@ Result<void> serve(const ServeOptions& options) {
   signals.wait();
   std::fprintf(stderr, "geosis: finishing what runs; a second signal stops at once\n");
   health.set_draining();
-  stop_or_exit(signals, options.drain + kLongestStop,
-               [&] { drain_and_stop(**front, grpc->get(), queue, options.drain); });
+  if (*grpc) (*grpc)->set_not_serving();
+  stop_or_exit(signals, options.drain_delay + options.drain + kLongestStop, [&] {
+    std::this_thread::sleep_for(options.drain_delay);
+    drain_and_stop(**front, grpc->get(), queue, options.drain);
+  });
   return {};
 }
 

@@ -22,6 +22,7 @@ struct ServeOptions {
   std::string listen = "127.0.0.1:8080";
   std::string tls_certificate, tls_key;  ///< files in PEM, for both doors; empty = plain
   std::string grpc = kDefaultGrpc;       ///< empty = no gRPC
+  std::string grpc_client_authorities;   ///< file in PEM: who signs gRPC clients' certificates; empty = none asked
   std::filesystem::path store = "geosis-store";
   std::uint64_t store_limit = 0;      ///< bytes that everything kept may take; 0 = as the disk allows
   std::filesystem::path page;         ///< folder of the built page
@@ -41,12 +42,14 @@ struct ServeOptions {
   int queued = 64;                          ///< extractions that may wait for a worker
   int queued_per_tenant = 48;               ///< of these in the name of one tenant
   std::chrono::seconds longest{3600};       ///< that one extraction may take
+  std::chrono::seconds probe_interval{10};  ///< between the gRPC door's questions for its own health
   std::chrono::seconds drain{25};
+  std::chrono::seconds drain_delay{0};  ///< before it: not ready, but open, until balancers have seen that
 };
 
-/// Serves until SIGTERM or SIGINT, then lets running answers finish for `drain`, and stops; a second signal ends the
-/// process at once, with status 1. Prints "listening on http://HOST:PORT" on stdout when it is ready, and below it
-/// "listening on grpc://HOST:PORT".
+/// Serves until SIGTERM or SIGINT, then is not ready for `drain_delay`, lets running answers finish for `drain`, and
+/// stops; a second signal ends the process at once, with status 1. Prints "listening on http://HOST:PORT" on stdout
+/// when it is ready, and below it "listening on grpc://HOST:PORT".
 ///
 /// errors   invalid_argument: an address that is not loopback without auth; those of store and front.
 Result<void> serve(const ServeOptions& options);

@@ -13,9 +13,9 @@ namespace {
 
 struct ServeArguments {
   ServeOptions options;
-  std::string store = "geosis-store", page = GEOSIS_PAGE_FOLDER, grpc = kDefaultGrpc;
-  int job_seconds = 3600;
-  int drain_seconds = 25, patience_seconds = 10, idle_seconds = 60;
+  std::string store = "geosis-store", page = GEOSIS_PAGE_FOLDER, grpc = kDefaultGrpc, admin = kDefaultAdmin;
+  int job_seconds = 3600, probe_seconds = 10;
+  int drain_seconds = 25, drain_delay_seconds = 0, patience_seconds = 10, idle_seconds = 60;
 };
 
 /// Of the processors for one extraction: three quarters, so that others go on beside it.
@@ -50,6 +50,10 @@ Command add_serve_command(CLI::App& app) {
   auto* key = flag("--tls-key", options.tls_key, "the certificate's key");
   certificate->type_name("PEM")->needs(key);
   key->type_name("PEM")->needs(certificate);
+  flag("--grpc-client-ca", options.grpc_client_authorities,
+       "authorities; gRPC clients must show a certificate of theirs")
+      ->type_name("PEM")
+      ->needs(certificate);
   flag("--store", arguments->store, "folder of everything that is kept")->type_name("DIR");
   flag("--store-limit", options.store_limit,
        "bytes that the store may take; results used longest ago make room, volumes do not; 0 = no limit")
@@ -75,20 +79,29 @@ Command add_serve_command(CLI::App& app) {
   command.add_option("--auth", options.auth, "none = anybody may call; api_keys FILE = whose key the file has")
       ->type_name("none | api_keys FILE")
       ->expected(1, 2);
-  flag("--admin", options.admin, "HOST:PORT of /metrics, /livez and /readyz; empty = nowhere")->type_name("ADDRESS");
+  flag("--admin", arguments->admin, "HOST:PORT of /metrics, /livez and /readyz; off = nowhere")->type_name("ADDRESS");
+  flag("--probe-seconds", arguments->probe_seconds,
+       "time between questions of the gRPC door for its own health; after three without an answer /livez fails")
+      ->check(CLI::Range(1, 3600));
   add_log_flags(command, options);
   flag("--cors-origin", options.cors_origins, "origins whose pages may call")->type_name("ORIGIN ...");
   flag("--page", arguments->page, "folder of the built page")->type_name("DIR");
   flag("--drain-seconds", arguments->drain_seconds, "how long running answers may take after SIGTERM")
       ->check(CLI::Range(0, 3600));
+  flag("--drain-delay-seconds", arguments->drain_delay_seconds,
+       "time after SIGTERM in which /readyz fails and all calls are still taken, before that")
+      ->check(CLI::Range(0, 3600));
   return [arguments]() -> Result<void> {
     arguments->options.store = arguments->store;
     arguments->options.page = arguments->page;
     arguments->options.grpc = arguments->grpc == "off" ? "" : arguments->grpc;
+    arguments->options.admin = arguments->admin == "off" ? "" : arguments->admin;
     arguments->options.patience = std::chrono::seconds(arguments->patience_seconds);
     arguments->options.idle = std::chrono::seconds(arguments->idle_seconds);
     arguments->options.longest = std::chrono::seconds(arguments->job_seconds);
+    arguments->options.probe_interval = std::chrono::seconds(arguments->probe_seconds);
     arguments->options.drain = std::chrono::seconds(arguments->drain_seconds);
+    arguments->options.drain_delay = std::chrono::seconds(arguments->drain_delay_seconds);
     return serve(arguments->options);
   };
 }

@@ -90,8 +90,9 @@ def refusing(call):
 class GrpcDoor:
     name = "grpc"
 
-    def __init__(self, address, key, **channel):
-        self.channel = grpc.insecure_channel(address, **channel)
+    def __init__(self, address, key, credentials=None, **channel):
+        self.channel = (grpc.secure_channel(address, credentials, **channel) if credentials else
+                        grpc.insecure_channel(address, **channel))
         self.volume_stub = volume_pb2_grpc.VolumeServiceStub(self.channel)
         self.extraction_stub = extraction_pb2_grpc.ExtractionServiceStub(self.channel)
         self._metadata = (("authorization", f"Bearer {key}"),) if key else ()

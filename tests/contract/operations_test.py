@@ -2,6 +2,8 @@
 
 GEOSIS = the built binary."""
 import array
+import ctypes
+import errno
 import http.client
 import json
 import os
@@ -24,6 +26,7 @@ SAMPLES = array.array("f", [(i - 12) ** 2 + (j - 12) ** 2 + (k - 12) ** 2
                             for i in range(SIDE) for j in range(SIDE) for k in range(SIDE)]).tobytes()
 UPLOAD = f"/v1/volumes?format=raw&dims={SIDE},{SIDE},{SIDE}"
 ID = "0" * 64
+PIDFD_GETFD, SYS_PIDFD_GETFD = ctypes.CDLL(None, use_errno=True).syscall, 438
 
 
 def run(*arguments):
@@ -233,10 +236,71 @@ class Watching(WithServer):
             for arguments, said in (((f"http://{self.server.address}/nothing",), "HTTP/1.1 404 Not Found: "),
                                     ((silent_url, "--timeout-seconds", "1"), "no answer"),
                                     ((f"http://127.0.0.1:{free_port()}/",), "cannot connect"),
-                                    (("https://127.0.0.1/",), "expected http://"), (("http:///livez",), "expected http://"),
+                                    (("ftp://127.0.0.1/",), "expected http://"), (("http:///livez",), "expected http://"),
                                     (("http://127.0.0.1/a\r\nb",), "expected http://")):
                 asked = run("probe", *arguments)
                 self.assertEqual((asked.returncode, said in asked.stderr), (1, True), (arguments, asked.stderr))
+
+
+class Liveness(unittest.TestCase):
+    def listener_of(self, process, address):
+        """The server's own listening socket, in our hands as well."""
+        handle = os.pidfd_open(process.pid)
+        self.addCleanup(os.close, handle)
+        for number in os.listdir(f"/proc/{process.pid}/fd"):
+            mine = PIDFD_GETFD(SYS_PIDFD_GETFD, handle, int(number), 0)
+            if mine < 0 and ctypes.get_errno() in (errno.EPERM, errno.ENOSYS):
+                self.skipTest("this kernel gives nobody another's sockets")
+            try:
+                found = socket.socket(fileno=mine)
+            except (OSError, ValueError):  # gone, or no socket
+                if mine >= 0:
+                    os.close(mine)
+                continue
+            is_listening = found.family == socket.AF_INET and found.getsockopt(socket.SOL_SOCKET, socket.SO_ACCEPTCONN)
+            if is_listening and found.getsockname() == (address.split(":")[0], int(address.split(":")[1])):
+                return found
+            found.close()
+        self.fail(f"nobody listens at {address}")
+
+    def test_a_grpc_door_that_takes_nobody_any_more_is_told_by_livez(self):
+        with tempfile.TemporaryDirectory() as folder, Server(folder, "--probe-seconds", "1") as server:
+            self.assertEqual(server.call("GET", "/livez")[0], 200)
+            with self.listener_of(server.process, server.grpc_address) as listener:
+                listener.shutdown(socket.SHUT_RDWR)
+            end = time.monotonic() + 60
+            while server.call("GET", "/livez")[0] == 200 and time.monotonic() < end:
+                time.sleep(0.2)
+            for address in (server.address, server.admin):
+                status, _, said = server.call("GET", "/livez", address=address)
+                self.assertEqual((status, b"the gRPC door" in said), (503, True), said)
+            self.assertEqual(run("probe", f"http://{server.admin}/livez").returncode, 1)
+            self.assertEqual(server.call("GET", "/v1/volumes")[0], 200)  # HTTP goes on
+
+
+class Leaving(unittest.TestCase):
+    def not_ready(self, server):
+        """Waits until /readyz says that it is shutting down, over connections that are taken as before."""
+        server.process.terminate()
+        end = time.monotonic() + 20
+        while (said := server.call("GET", "/readyz"))[0] == 200 and time.monotonic() < end:
+            time.sleep(0.02)
+        self.assertEqual((said[0], b"draining" in said[2]), (503, True), said)
+
+    def test_calls_are_taken_until_balancers_know(self):
+        with tempfile.TemporaryDirectory() as folder, Server(folder, "--drain-delay-seconds", "2") as server:
+            self.not_ready(server)
+            self.assertEqual(server.call("GET", "/livez")[0], 200)
+            self.assertEqual(server.call("POST", UPLOAD, SAMPLES)[0], 201)
+            host, port = server.grpc_address.split(":")
+            socket.create_connection((host, int(port)), timeout=10).close()
+            self.assertEqual(server.process.wait(timeout=60), 0)
+
+    def test_a_second_signal_waits_for_nobody(self):
+        with tempfile.TemporaryDirectory() as folder, Server(folder, "--drain-delay-seconds", "600") as server:
+            self.not_ready(server)
+            server.process.terminate()
+            self.assertEqual(server.process.wait(timeout=60), 1)
 
 
 class Errors(WithServer):

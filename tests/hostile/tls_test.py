@@ -13,6 +13,7 @@ import unittest
 from pathlib import Path
 
 from hostile import connect, converse, read_all, start, statuses
+from certificates import Certificates  # of the contract's tests
 
 PATIENCE = 1  # second
 SIDE = 700  # samples of a slice's side: 2 MB a slice
@@ -22,17 +23,9 @@ def setUpModule():
     global FOLDER, SERVICE, CERTIFICATE, KEY
     FOLDER = Path(tempfile.mkdtemp(prefix="geosis-tls-"))
     unittest.addModuleCleanup(shutil.rmtree, FOLDER)
-    CERTIFICATE, KEY = make_certificate("server")
+    CERTIFICATE, KEY = Certificates(FOLDER).own("server")
     flags = ("--tls-cert", str(CERTIFICATE), "--tls-key", str(KEY))
     SERVICE = unittest.enterModuleContext(start(FOLDER, *flags, patience=PATIENCE))
-
-
-def make_certificate(name):
-    certificate, key = FOLDER / f"{name}.pem", FOLDER / f"{name}.key"
-    subprocess.run(["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-days",
-                    "2", "-subj", "/CN=localhost", "-addext", "subjectAltName=IP:127.0.0.1", "-keyout", key, "-out",
-                    certificate], check=True, stderr=subprocess.DEVNULL)
-    return certificate, key
 
 
 def client_context():
@@ -136,7 +129,7 @@ class Tls(unittest.TestCase):
             self.assertLess(received, SIDE * SIDE * 4)
 
     def test_another_certificates_key_is_refused(self):
-        _, other = make_certificate("other")
+        _, other = Certificates(FOLDER).own("other")
         for certificate, key in ((CERTIFICATE, other), (FOLDER / "absent.pem", KEY), (KEY, KEY)):
             said = subprocess.run([SERVICE.process.args[0], "serve", "--listen", "127.0.0.1:0", "--grpc", "off", "--store", FOLDER / "store",
                                    "--tls-cert", certificate, "--tls-key", key], capture_output=True, text=True, timeout=20)

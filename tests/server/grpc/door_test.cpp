@@ -1,12 +1,15 @@
 #include "server/grpc/door.h"
 
+#include <fstream>
 #include <string>
 #include <thread>
 
 #include <grpcpp/create_channel.h>
 #include <grpcpp/generic/generic_stub.h>
 
+#include "server/grpc/certificate.h"
 #include "tests/server/grpc/door_fixture.h"
+#include "tests/server/store/temporary_folder.h"
 
 namespace geosis::server::rpc {
 namespace {
@@ -49,7 +52,7 @@ TEST_F(DoorTest, RefusesAddressesThatAreTakenOrNone) {
   const Door::Parts parts{.services_of = {}, .gate = gate, .uploads = uploads};
   EXPECT_EQ(Door::start({.listen = address()}, parts).error().code, ErrorCode::unavailable);
   EXPECT_EQ(Door::start({.listen = "127.0.0.1"}, parts).error().code, ErrorCode::invalid_argument);
-  EXPECT_EQ(Door::start({.listen = "127.0.0.1:0", .tls_certificate = "/no", .tls_key = "/such"}, parts).error().code,
+  EXPECT_EQ(Door::start({.listen = "127.0.0.1:0", .tls = {.certificate = "/no", .key = "/such"}}, parts).error().code,
             ErrorCode::invalid_argument);
 }
 
@@ -126,6 +129,29 @@ TEST_F(DoorTest, StaysAliveByItsOwnProbe) {
   start({.probe_interval = 20ms});
   std::this_thread::sleep_for(300ms);
   EXPECT_FALSE(door->not_alive());
+}
+
+TEST_F(DoorTest, AsksItselfThoughItAsksOthersForCertificates) {
+  const geosis::test::TemporaryFolder folder;
+  const auto write = [&](const char* name, const std::string& text) {
+    std::ofstream(folder.path() / name) << text;
+    return (folder.path() / name).string();
+  };
+  const SignedKey own = *make_signed_key("door"), authority = *make_signed_key("authority");
+  start({.tls = {.certificate = write("door.pem", own.certificate),
+                 .key = write("door.key", own.key),
+                 .client_authorities = write("authority.pem", authority.certificate)},
+         .probe_interval = 20ms});
+  std::this_thread::sleep_for(300ms);
+  EXPECT_FALSE(door->not_alive());
+
+  const auto ask = [&](const SignedKey& identity) {
+    const grpc::SslCredentialsOptions options{own.certificate, identity.key, identity.certificate};
+    return health(grpc::CreateChannel(address(), grpc::SslCredentials(options)));
+  };
+  EXPECT_EQ(ask(authority), 1);
+  EXPECT_EQ(ask(own), -1);
+  EXPECT_EQ(health(new_channel()), -1);
 }
 
 TEST_F(DoorTest, ConnectionsThatAreTooManyAreRefused) {

@@ -27,12 +27,12 @@ std::string dead_address() {
 }
 
 TEST(SelfProbe, TellsOfADoorThatDoesNotAnswer) {
-  const SelfProbe probe(dead_address(), false, 5ms, [] { return false; });
+  const SelfProbe probe(dead_address(), grpc::InsecureChannelCredentials(), 5ms, [] { return false; });
   EXPECT_TRUE(has_problem_soon(probe, 20s));
 }
 
 TEST(SelfProbe, BlamesNoDoorThatIsFull) {
-  const SelfProbe probe(dead_address(), false, 5ms, [] { return true; });
+  const SelfProbe probe(dead_address(), grpc::InsecureChannelCredentials(), 5ms, [] { return true; });
   EXPECT_FALSE(has_problem_soon(probe, 300ms));
 }
 

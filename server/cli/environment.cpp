@@ -39,7 +39,8 @@ std::vector<std::string> with_environment(const CLI::App& app, std::vector<std::
     for (const CLI::Option* option : command->get_options()) {
       for (const std::string& flag : option->get_lnames()) {
         const char* const text = std::getenv(variable_of(flag).c_str());
-        if (text != nullptr && flag != "help" && !is_given(arguments, flag)) add_flag(*option, flag, text, arguments);
+        const bool is_set = text != nullptr && *text != '\0';
+        if (is_set && flag != "help" && !is_given(arguments, flag)) add_flag(*option, flag, text, arguments);
       }
     }
     break;

@@ -14,6 +14,28 @@ def bytes_of(text):
     return int(match.group(1)) << {"k": 10, "m": 20, "g": 30}[match.group(2)] if match else 0
 
 
+def merged(compose, more):
+    """compose.yaml with another file over it, as `docker compose --file ... --file ...` reads them: objects are joined, lists
+    appended, the rest replaced."""
+    if isinstance(compose, dict) and isinstance(more, dict):
+        return {name: merged(compose[name], more[name]) if name in compose and name in more else more.get(name, compose.get(name))
+                for name in {**compose, **more}}
+    return compose + more if isinstance(compose, list) and isinstance(more, list) else more
+
+
+def of_secrets(compose):
+    for name, service in compose["services"].items():
+        for secret in service.get("secrets", []):
+            file = compose.get("secrets", {}).get(secret, {}).get("file", "")
+            if not file.startswith("./"):
+                yield f"{name}: nobody says where {secret} is"
+            if f"/run/secrets/{secret}" not in " ".join(service.get("environment", {}).values()).split():
+                yield f"{name}: does not read {secret}"
+        for word in " ".join(service.get("environment", {}).values()).split():
+            if word.startswith("/run/secrets/") and word.removeprefix("/run/secrets/") not in service.get("secrets", []):
+                yield f"{name}: {word} is not there"
+
+
 def of_every_service(name, service):
     if service.get("read_only") is not True:
         yield f"{name}: its root can be written"
@@ -53,7 +75,8 @@ def of_the_whole(compose):
         yield "geosis: is not on an internal network alone"
     if "store:/data" not in server.get("volumes", []):
         yield "geosis: its store does not outlive it"
-    if seconds_of(server.get("stop_grace_period")) <= int(environment.get("GEOSIS_DRAIN_SECONDS", 25)) + 3:
+    drain = int(environment.get("GEOSIS_DRAIN_DELAY_SECONDS", 0)) + int(environment.get("GEOSIS_DRAIN_SECONDS", 25))
+    if seconds_of(server.get("stop_grace_period")) <= drain + 3:
         yield "geosis: is killed before it has drained"
     if edge.get("depends_on", {}).get("geosis", {}).get("condition") != "service_healthy":
         yield "edge: starts before there is a server"
@@ -116,5 +139,6 @@ def violations(compose, dockerfile, nginx):
     for name, service in compose["services"].items():
         yield from of_every_service(name, service)
     yield from of_the_whole(compose)
+    yield from of_secrets(compose)
     yield from of_compose_and_edge(compose, nginx)
     yield from of_images(compose, dockerfile)

@@ -5,18 +5,19 @@ from pathlib import Path
 
 import yaml
 
-from compose_rules import violations
+from compose_rules import merged, violations
 
 DOCKER = Path(__file__).resolve().parents[2] / "docker"
 COMPOSE = yaml.safe_load((DOCKER / "compose.yaml").read_text())
+KEYS = yaml.safe_load((DOCKER / "compose.keys.yaml").read_text())
 DOCKERFILE = (DOCKER / "Dockerfile").read_text()
 NGINX = (DOCKER / "nginx.conf").read_text()
 ABSENT = object()
 
 
-def broken(path, value):
-    """compose.yaml with another value, or none, at services/..."""
-    compose = copy.deepcopy(COMPOSE)
+def broken(path, value, whole=COMPOSE):
+    """compose.yaml, or another one, with another value, or none, at services/..."""
+    compose = copy.deepcopy(whole)
     *folders, last = path.split("/")
     place = compose
     for name in folders:
@@ -33,10 +34,23 @@ class ComposeRules(unittest.TestCase):
         self.assertEqual(list(violations(COMPOSE, DOCKERFILE, NGINX)), [])
 
     def test_keys_change_only_who_may_call(self):
-        more = yaml.safe_load((DOCKER / "compose.keys.yaml").read_text())
-        self.assertEqual(list(more["services"]), ["geosis"])
-        self.assertEqual(set(more["services"]["geosis"]), {"environment", "secrets"})
-        self.assertEqual(more["services"]["geosis"]["environment"], {"GEOSIS_AUTH": "api_keys /run/secrets/geosis_keys"})
+        self.assertEqual(list(KEYS["services"]), ["geosis"])
+        self.assertEqual(set(KEYS["services"]["geosis"]), {"environment", "secrets"})
+        both = merged(COMPOSE, KEYS)
+        self.assertEqual(list(violations(both, DOCKERFILE, NGINX)), [])
+        self.assertEqual(both["services"]["geosis"]["environment"].pop("GEOSIS_AUTH"), "api_keys /run/secrets/geosis_keys")
+        without = copy.deepcopy(COMPOSE["services"]["geosis"])
+        del without["environment"]["GEOSIS_AUTH"]
+        self.assertEqual({**both["services"]["geosis"], "secrets": None}, {**without, "secrets": None})
+        self.assertEqual({**both, "services": None, "secrets": None}, {**COMPOSE, "services": None, "secrets": None})
+
+    def test_each_break_in_the_file_of_keys_is_found(self):
+        for path, value, said in (("secrets", {}, "nobody says where"), ("services/geosis/secrets", [], "is not there"),
+                                  ("secrets/geosis_keys/file", "/etc/keys.txt", "nobody says where"),
+                                  ("services/geosis/environment/GEOSIS_AUTH", "none", "does not read geosis_keys")):
+            with self.subTest(path=path):
+                found = list(violations(merged(COMPOSE, broken(path, value, KEYS)), DOCKERFILE, NGINX))
+                self.assertTrue(any(said in line for line in found), found)
 
     def test_each_break_in_compose_is_found(self):
         server, edge = "services/geosis", "services/edge"
@@ -54,6 +68,7 @@ class ComposeRules(unittest.TestCase):
                 (f"{server}/container_name", "geosis", "one replica only"),
                 (f"{server}/networks", ["servers", "clients"], "not on an internal network"),
                 ("networks/servers", {}, "not on an internal network"), (f"{server}/stop_grace_period", "20s", "before it has drained"),
+                (f"{server}/environment/GEOSIS_DRAIN_DELAY_SECONDS", "15", "before it has drained"),
                 (f"{edge}/stop_grace_period", "1m", "before it has drained"), (f"{edge}/depends_on", {}, "before there is a server"),
                 (f"{server}/environment/GEOSIS_AUTH", ABSENT, "who may call"),
                 (f"{server}/environment/GEOSIS_MAX_BODY", "1000", "different sizes"),

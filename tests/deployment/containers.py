@@ -13,10 +13,12 @@ from pathlib import Path
 
 import yaml
 
+from compose_rules import merged
+
 HERE = Path(__file__).resolve().parent
 REPOSITORY = HERE.parents[1]
 IMAGES = REPOSITORY / "build" / "images"
-COMPOSE = yaml.safe_load((REPOSITORY / "docker" / "compose.yaml").read_text())
+COMPOSE, KEYS = (yaml.safe_load((REPOSITORY / "docker" / name).read_text()) for name in ("compose.yaml", "compose.keys.yaml"))
 BRIDGE = "10.77.0.1"
 MASKED = ["/proc/acpi", "/proc/kcore", "/proc/keys", "/proc/latency_stats", "/proc/timer_list", "/proc/sched_debug", "/sys/firmware"]
 READ_ONLY = ["/proc/bus", "/proc/fs", "/proc/irq", "/proc/sys", "/proc/sysrq-trigger"]
@@ -50,21 +52,24 @@ class Container:
     """One container of a service of compose.yaml; a context manager.
 
     address   its own on the bridge.    volumes   {path inside: folder}.    environment   beside compose's; None = without.
+    keys      a file of keys, with compose.keys.yaml over compose.yaml; None = compose.yaml alone.
     """
 
-    def __init__(self, folder, service, name, address, volumes, environment=None, memory=None):
-        self.service, self.name, self.address = COMPOSE["services"][service], name, address
+    def __init__(self, folder, service, name, address, volumes, environment=None, memory=None, keys=None):
+        compose = merged(COMPOSE, KEYS) if keys else COMPOSE
+        self.service, self.name, self.address = compose["services"][service], name, address
         self.image = json.loads((IMAGES / f"{service}.json").read_text())["Docker"]["config"]
         self.bundle = Path(tempfile.mkdtemp(prefix=f"{name}-", dir=folder))
         self.memory = memory or size(self.service["mem_limit"])
         variables = dict(line.split("=", 1) for line in self.image["Env"])
         variables.update(self.service.get("environment", {}))
         variables.update(environment or {})
-        (self.bundle / "config.json").write_text(json.dumps(self._configuration(service, variables, volumes)))
+        secrets = {f"/run/secrets/{secret}": keys for secret in self.service.get("secrets", [])}
+        (self.bundle / "config.json").write_text(json.dumps(self._configuration(service, variables, volumes, secrets)))
         self._runc = ["runc", "--root", str(Path(folder) / "runc")]
         self.log = self.bundle / "log"
 
-    def _configuration(self, service, variables, volumes):
+    def _configuration(self, service, variables, volumes, secrets):
         user, group = (int(number) for number in self.image["User"].split(":"))
         files = self.service["ulimits"]["nofile"]
         tmp = self.service["tmpfs"][0].partition(":")[2].split(",")
@@ -76,6 +81,8 @@ class Container:
                   {"destination": "/tmp", "type": "tmpfs", "source": "tmpfs", "options": [*tmp, "mode=1777"]}]
         mounts += [{"destination": inside, "type": "bind", "source": str(outside), "options": ["rbind", "rw", "nosuid", "nodev"]}
                    for inside, outside in volumes.items()]
+        mounts += [{"destination": inside, "type": "bind", "source": str(file), "options": ["bind", "ro", "nosuid", "nodev", "noexec"]}
+                   for inside, file in secrets.items()]
         return {
             "ociVersion": "1.0.2",
             "process": {"user": {"uid": user, "gid": group}, "cwd": "/",

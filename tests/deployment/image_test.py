@@ -58,8 +58,8 @@ def volume_of(name, image, inside):
     return {inside: folder}
 
 
-def server(name="geosis-1", address=FIRST, store="store", **environment):
-    return Container(FOLDER, "geosis", name, address, volume_of(store, "geosis", "/data"), environment, memory=MEMORY)
+def server(name="geosis-1", address=FIRST, store="store", keys=None, **environment):
+    return Container(FOLDER, "geosis", name, address, volume_of(store, "geosis", "/data"), environment, memory=MEMORY, keys=keys)
 
 
 def edge():
@@ -105,10 +105,10 @@ def stream_by_grpc(address, extraction):
     return manifest, parts
 
 
-def volumes_by_grpc(address):
+def volumes_by_grpc(address, *metadata):
     with grpc.insecure_channel(f"{address}:8081") as channel:
         stub = volume_pb2_grpc.VolumeServiceStub(channel)
-        return len(stub.ListVolumes(volume_pb2.ListVolumesRequest(), timeout=20).volumes)
+        return len(stub.ListVolumes(volume_pb2.ListVolumesRequest(), metadata=metadata, timeout=20).volumes)
 
 
 class Images(unittest.TestCase):
@@ -169,6 +169,26 @@ class Server(unittest.TestCase):
         with server(store="open", GEOSIS_AUTH=None) as one:
             self.assertEqual(one.process.wait(timeout=30), 1)
             self.assertIn("--auth", one.log.read_text())
+
+
+    def test_with_a_file_of_keys_it_answers_those_who_have_one(self):
+        key, line = run(GEOSIS, "key", "--name", "ci").split("\n")[:2]
+        keys = FOLDER / "keys.txt"
+        keys.write_text(line + "\n")
+        keys.chmod(0o600)
+        with server(store="keyed", keys=keys) as one:  # root's file, which the server's user cannot read
+            self.assertEqual(one.process.wait(timeout=30), 1)
+            self.assertIn("/run/secrets/geosis_keys", one.log.read_text())
+        os.chown(keys, 10001, 0)
+        with server(store="keyed", keys=keys) as one:
+            one.wait_until_healthy()
+            self.assertEqual(call(FIRST, "GET", "/v1/volumes")[0], 401)
+            self.assertEqual(call(FIRST, "GET", "/v1/volumes", Authorization=f"Bearer {key}")[0], 200)
+            with self.assertRaises(grpc.RpcError) as refused:
+                volumes_by_grpc(FIRST)
+            self.assertEqual(refused.exception.code(), grpc.StatusCode.UNAUTHENTICATED)
+            self.assertEqual(volumes_by_grpc(FIRST, ("authorization", f"Bearer {key}")), 0)
+            self.assertEqual(one.stop(), 0)
 
 
 class Deployment(unittest.TestCase):

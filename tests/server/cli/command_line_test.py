@@ -348,6 +348,11 @@ class Settings(unittest.TestCase):
         served = self.served_at("--listen", "127.0.0.4:0", GEOSIS_LISTEN="127.0.0.3:0")
         self.assertTrue(served.startswith("127.0.0.4:"), served)
 
+    def test_an_empty_variable_is_none(self):
+        served = self.served_at("--config", str(self.config), "--admin", "off", GEOSIS_LISTEN="", GEOSIS_AUTH="", GEOSIS_ADMIN="",
+                                GEOSIS_MEMORY="", GEOSIS_CORS_ORIGIN="", GEOSIS_TLS_CERT="")
+        self.assertTrue(served.startswith("127.0.0.2:"), served)
+
     def test_variables_stand_for_flags_of_every_command(self):
         folder = Path(self.store).parent
         survey = folder / "survey.sgy"

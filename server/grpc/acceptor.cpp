@@ -5,6 +5,7 @@
 
 #include <poll.h>
 #include <sys/eventfd.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -12,6 +13,7 @@ namespace geosis::server::rpc {
 namespace {
 
 constexpr int kTickMilliseconds = 250;
+constexpr int kLookMilliseconds = 20;  // a flood begins a few thousand calls in that time
 
 /// Names a socket as long as it is open; 0 for what is none.
 std::uint64_t inode_of(int number) {
@@ -19,13 +21,21 @@ std::uint64_t inode_of(int number) {
   return ::fstat(number, &status) == 0 && S_ISSOCK(status.st_mode) ? status.st_ino : 0;
 }
 
+/// gRPC notices the end and closes the socket, which then waits for nothing: its peer does not deserve it.
+void reset(int socket) {
+  const linger at_once{.l_onoff = 1, .l_linger = 0};
+  ::setsockopt(socket, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+  ::shutdown(socket, SHUT_RDWR);
+}
+
 }  // namespace
 
-Acceptor::Acceptor(Listener listener, Limits limits, Hand hand, std::function<void()> tick)
+Acceptor::Acceptor(Listener listener, Limits limits, Hand hand, Look look, std::function<void()> tick)
     : listener_(std::move(listener)),
       port_(listener_.port()),
       limits_(limits),
       hand_(std::move(hand)),
+      look_(std::move(look)),
       tick_(std::move(tick)),
       wake_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
       thread_([this] { run(); }) {}
@@ -41,14 +51,27 @@ void Acceptor::stop() {
 
 void Acceptor::run() {
   auto next_tick = std::chrono::steady_clock::now();
+  pollfd events[] = {{wake_.number(), POLLIN, 0}, {listener_.descriptor(), POLLIN, 0}};
   while (!is_stopping_) {
-    pollfd events[] = {{listener_.descriptor(), POLLIN, 0}, {wake_.number(), POLLIN, 0}};
-    ::poll(events, 2, kTickMilliseconds);
-    if (events[0].revents != 0 && !is_stopping_) accept_all();
+    ::poll(events, is_full_ ? 1 : 2, open_.empty() ? kTickMilliseconds : kLookMilliseconds);
+    if (!open_.empty() || is_full_) look();
+    if (events[1].revents != 0 && !is_full_ && !is_stopping_) accept_all();
+    // A listener that has broken stays readable and gives nothing: the door's own questions tell of it.
+    if ((events[1].revents & (POLLERR | POLLHUP | POLLNVAL)) != 0) events[1].fd = -1;
     if (std::chrono::steady_clock::now() < next_tick) continue;
     next_tick = std::chrono::steady_clock::now() + std::chrono::milliseconds(kTickMilliseconds);
     forget_closed();
     tick_();
+  }
+}
+
+void Acceptor::look() {
+  const FloodGuard::Verdict verdict = look_();
+  is_full_ = verdict.is_full;
+  for (const Open& one : open_) {
+    const bool is_harmful =
+        std::find(verdict.harmful.begin(), verdict.harmful.end(), one.name) != verdict.harmful.end();
+    if (is_harmful && inode_of(one.number) == one.inode) reset(one.number);
   }
 }
 
@@ -65,7 +88,8 @@ void Acceptor::accept_all() {
         break;
     }
     if (!has_room_for(accepted.peer)) continue;  // closed
-    open_.push_back({accepted.socket.number(), inode_of(accepted.socket.number()), accepted.peer});
+    const int number = accepted.socket.number();
+    open_.push_back({number, inode_of(number), accepted.peer, connection_name(number)});
     count_ = open_.size();
     hand_(std::move(accepted.socket));
   }

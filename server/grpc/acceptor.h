@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -11,13 +12,14 @@
 #include <vector>
 
 #include "engine/base/result.h"
+#include "server/grpc/flood_guard.h"
 #include "server/net/descriptor.h"
 #include "server/net/listener.h"
 
 namespace geosis::server::rpc {
 
 /// Accepts connections in gRPC's place, on a thread of its own: it outlives the want of descriptors, refuses what is
-/// too many, and knows its port. gRPC's own acceptor does none of it.
+/// too many, ends what floods, and knows its port. gRPC's own acceptor does none of it.
 class Acceptor {
  public:
   struct Limits {
@@ -26,13 +28,18 @@ class Acceptor {
   /// Takes over an accepted socket.
   using Hand = std::function<void(Descriptor socket)>;
 
+  /// What becomes of connections that are there, and whether others may come; asked often while there are any.
+  using Look = std::function<FloodGuard::Verdict()>;
+
   /// tick   called a few times a second.
-  Acceptor(Listener listener, Limits limits, Hand hand, std::function<void()> tick);
+  Acceptor(Listener listener, Limits limits, Hand hand, Look look, std::function<void()> tick);
   ~Acceptor() { stop(); }
 
   std::uint16_t port() const { return port_; }
   /// Connections that are open now, about.
   std::size_t connections() const { return count_; }
+  /// Whether some that come may have to wait or are refused.
+  bool may_be_full() const { return is_full_ || count_ >= std::min(limits_.connections, limits_.connections_per_peer); }
   /// No more connections, from now on; those waiting are refused.
   void stop();
 
@@ -41,8 +48,10 @@ class Acceptor {
     int number;           ///< of gRPC's descriptor
     std::uint64_t inode;  ///< another one: it was closed, and the number is somebody else's
     std::string peer;
+    std::string name;  ///< connection_name()
   };
   void run();
+  void look();
   void accept_all();
   void forget_closed();
   bool has_room_for(const std::string& peer);
@@ -51,11 +60,13 @@ class Acceptor {
   const std::uint16_t port_;
   const Limits limits_;
   const Hand hand_;
+  const Look look_;
   const std::function<void()> tick_;
   Descriptor wake_;
   std::atomic<bool> is_stopping_{false};
   std::atomic<std::size_t> count_{0};
-  std::vector<Open> open_;  ///< of the thread
+  std::atomic<bool> is_full_{false};  ///< by the last look's verdict
+  std::vector<Open> open_;            ///< of the thread
   std::thread thread_;
 };
 

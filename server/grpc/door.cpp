@@ -76,6 +76,12 @@ void set_limits(grpc::ServerBuilder& builder, const DoorOptions& options) {
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS, 60 * kMinute);
 }
 
+/// Clients that wait for their answers hold what may be open and a few more, whose memory is just given back.
+FloodGuard flood_guard(const DoorOptions& options) {
+  const auto open = static_cast<std::uint64_t>(options.streams_per_connection);
+  return FloodGuard({.of_one = 16 * open, .of_one_then = 2 * open, .of_all = 128 * open});
+}
+
 }  // namespace
 
 class Door::Running {
@@ -118,12 +124,10 @@ class Door::Running {
     set_serving(true);
     acceptor_ = std::make_unique<Acceptor>(
         *std::move(listener), Acceptor::Limits{options.connections, options.connections_per_peer},
-        [this](Descriptor socket) { take(std::move(socket)); }, [this] { room_.open.end_late_ones(); });
+        [this](Descriptor socket) { take(std::move(socket)); }, [guard = flood_guard(options)] { return guard.look(); },
+        [this] { room_.open.end_late_ones(); });
     probe_ = std::make_unique<SelfProbe>(probe_target(options.listen, acceptor_->port()), secured->own_client,
-                                         options.probe_interval,
-                                         [this, most = std::min(options.connections, options.connections_per_peer)] {
-                                           return acceptor_->connections() >= most;
-                                         });
+                                         options.probe_interval, [this] { return acceptor_->may_be_full(); });
     return {};
   }
 

@@ -6,6 +6,7 @@
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <poll.h>
 #include <sys/socket.h>
 
 namespace geosis::server::rpc {
@@ -30,6 +31,20 @@ bool is_refused(const Descriptor& socket) {
   return ::recv(socket.number(), &byte, 1, 0) <= 0;
 }
 
+/// Whether more was said, or the connection was ended, within a few of the acceptor's looks.
+bool has_more(const Descriptor& socket) {
+  pollfd event{socket.number(), POLLIN, 0};
+  return ::poll(&event, 1, 100) > 0;
+}
+
+/// As the other side sees it.
+std::string name_of(const Descriptor& socket) {
+  sockaddr_in address{};
+  socklen_t length = sizeof address;
+  EXPECT_EQ(::getsockname(socket.number(), reinterpret_cast<sockaddr*>(&address), &length), 0);
+  return "ipv4:127.0.0.1:" + std::to_string(ntohs(address.sin_port));
+}
+
 class AcceptorTest : public testing::Test {
  protected:
   /// Keeps what it is handed, and greets it.
@@ -40,7 +55,15 @@ class AcceptorTest : public testing::Test {
               const std::lock_guard lock(mutex_);
               held_.push_back(std::move(socket));
             },
+            [this] {
+              const std::lock_guard lock(mutex_);
+              return verdict_;
+            },
             [this] { ++ticks_; }};
+  }
+  void tell(FloodGuard::Verdict verdict) {
+    const std::lock_guard lock(mutex_);
+    verdict_ = std::move(verdict);
   }
   void hang_up() {
     const std::lock_guard lock(mutex_);
@@ -49,6 +72,7 @@ class AcceptorTest : public testing::Test {
 
   std::mutex mutex_;
   std::vector<Descriptor> held_;
+  FloodGuard::Verdict verdict_;
   std::atomic<int> ticks_{0};
 };
 
@@ -69,6 +93,29 @@ TEST_F(AcceptorTest, OnePeerGetsHisShareOnly) {
   const Descriptor first = connect_to(acceptor.port()), second = connect_to(acceptor.port());
   EXPECT_FALSE(is_refused(first) || is_refused(second));
   EXPECT_TRUE(is_refused(connect_to(acceptor.port())));
+}
+
+TEST_F(AcceptorTest, EndsWhatItIsToldToAndNobodyElse) {
+  Acceptor acceptor = make({.connections = 3, .connections_per_peer = 3});
+  const Descriptor harmful = connect_to(acceptor.port()), other = connect_to(acceptor.port());
+  EXPECT_FALSE(is_refused(harmful) || is_refused(other));  // both are greeted
+  tell({.harmful = {name_of(harmful)}, .is_full = false});
+  EXPECT_TRUE(is_refused(harmful));
+  tell({});
+  EXPECT_FALSE(has_more(other));
+}
+
+TEST_F(AcceptorTest, LetsOthersWaitWhileItIsFull) {
+  Acceptor acceptor = make({.connections = 3, .connections_per_peer = 3});
+  const Descriptor first = connect_to(acceptor.port());
+  EXPECT_FALSE(is_refused(first));
+  tell({.harmful = {}, .is_full = true});
+  while (!acceptor.may_be_full()) std::this_thread::sleep_for(5ms);
+  const Descriptor second = connect_to(acceptor.port());
+  hang_up();  // nobody is left whom it would have to look after
+  EXPECT_FALSE(has_more(second));
+  tell({});
+  EXPECT_FALSE(is_refused(second));
 }
 
 TEST_F(AcceptorTest, TicksAndStops) {

@@ -1,0 +1,147 @@
+#include "server/grpc/held_calls.h"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include "server/net/descriptor.h"
+#include "server/net/listener.h"
+#include "tests/server/grpc/door_fixture.h"
+
+namespace geosis::server::rpc {
+namespace {
+
+using namespace std::chrono_literals;
+
+Descriptor connect_to(std::uint16_t port) {
+  Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  EXPECT_EQ(::connect(socket.number(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  return socket;
+}
+
+std::uint16_t port_of(const Descriptor& socket) {
+  sockaddr_in6 address{};
+  socklen_t length = sizeof address;
+  EXPECT_EQ(::getsockname(socket.number(), reinterpret_cast<sockaddr*>(&address), &length), 0);
+  return ntohs(address.sin6_port);
+}
+
+Listener::Accepted accept_one(Listener& listener) {
+  for (;;) {
+    Listener::Accepted accepted = listener.accept();
+    if (accepted.outcome == Listener::Accepted::Outcome::connection) return accepted;
+  }
+}
+
+TEST(ConnectionName, IsWrittenAsGrpcWritesIt) {
+  for (const char* address : {"127.0.0.1:0", "[::]:0"}) {  // the second sees the client's address as a mapped one
+    auto listener = Listener::open(address);
+    if (!listener) GTEST_SKIP() << "no IPv6 here";
+    const Descriptor client = connect_to(listener->port());
+    EXPECT_EQ(connection_name(accept_one(*listener).socket.number()),
+              "ipv4:127.0.0.1:" + std::to_string(port_of(client)));
+  }
+  auto listener = Listener::open("[::1]:0");
+  if (!listener) GTEST_SKIP() << "no IPv6 here";
+  const Descriptor client(::socket(AF_INET6, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_in6 address{};
+  address.sin6_family = AF_INET6;
+  address.sin6_port = htons(listener->port());
+  address.sin6_addr = in6addr_loopback;
+  ASSERT_EQ(::connect(client.number(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
+  EXPECT_EQ(connection_name(accept_one(*listener).socket.number()),
+            "ipv6:%5B::1%5D:" + std::to_string(port_of(client)));
+  EXPECT_EQ(connection_name(-1), "");
+}
+
+std::string frame(char kind, char flags, std::uint32_t stream, std::string_view payload) {
+  const auto byte = [](std::size_t value) { return static_cast<char>(value & 0xff); };
+  std::string text = {0, byte(payload.size() >> 8), byte(payload.size()), kind, flags};
+  for (const int shift : {24, 16, 8, 0}) text += byte(stream >> shift);
+  return text.append(payload);
+}
+
+std::string greeting() {
+  return "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n" + frame(4, 0, 0, "");
+}
+
+/// The heads of calls of GetVolume, each taken back at once.
+std::string taken_back(std::uint32_t first_stream, std::uint32_t count) {
+  std::string head;
+  for (const auto& [name, value] : std::initializer_list<std::pair<std::string_view, std::string_view>>{
+           {":method", "POST"},
+           {":scheme", "http"},
+           {":path", "/geosis.v1.VolumeService/GetVolume"},
+           {":authority", "a"},
+           {"te", "trailers"},
+           {"content-type", "application/grpc"}}) {
+    head.append({0, static_cast<char>(name.size())})
+        .append(name)
+        .append({static_cast<char>(value.size())})
+        .append(value);
+  }
+  std::string text;
+  for (std::uint32_t n = 0; n < count; ++n) {
+    const std::uint32_t stream = first_stream + 2 * n;
+    text += frame(1, 4, stream, head) + frame(3, 0, stream, std::string_view("\0\0\0\10", 4));
+  }
+  return text;
+}
+
+bool send_all(const Descriptor& socket, std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t sent = ::send(socket.number(), text.data(), text.size(), MSG_NOSIGNAL);
+    if (sent <= 0) return false;
+    text.remove_prefix(static_cast<std::size_t>(sent));
+  }
+  return true;
+}
+
+class HeldCallsTest : public test::DoorTest {};
+
+TEST_F(HeldCallsTest, CountsTheCallsOfEachConnectionUntilTheyAreOver) {
+  test::Gate gate_of_work;
+  start({}, test::gated_after(4, gate_of_work));
+  v1::StreamLodsRequest request;
+  request.set_id(create(upload_ball()).id());
+  grpc::ClientContext context;
+  const auto stream = extractions->StreamLods(&context, request);
+  v1::LodChunk chunk;
+  ASSERT_TRUE(stream->Read(&chunk));
+  EXPECT_TRUE(test::comes_true([] { return held_calls() == 1; }));
+  const auto of_each = held_calls_by_connection();
+  EXPECT_EQ(std::count_if(of_each.begin(), of_each.end(), [](const HeldCalls& one) { return one.count == 1; }), 1);
+  gate_of_work.open();
+  while (stream->Read(&chunk)) {
+  }
+  EXPECT_TRUE(stream->Finish().ok());
+  EXPECT_TRUE(test::comes_true([] { return held_calls() == 0; }));
+}
+
+TEST_F(HeldCallsTest, AClientWhoTakesBackWhatItBeginsIsHungUpOn) {
+  start({.streams_per_connection = 1});  // sixteen may be on their way out
+  const std::string other = upload_ball();
+  const Descriptor flood = connect_to(door->port());
+  ASSERT_TRUE(send_all(flood, greeting()));
+  std::uint32_t stream = 1;
+  constexpr std::uint32_t kAtOnce = 5000, kEnough = 4'000'000;
+  while (stream < kEnough && send_all(flood, taken_back(stream, kAtOnce))) stream += 2 * kAtOnce;
+  EXPECT_LT(stream, kEnough);
+  grpc::ClientContext context;
+  v1::GetVolumeRequest request;
+  request.set_id(other);
+  v1::Volume volume;
+  EXPECT_TRUE(volumes->GetVolume(&context, request, &volume).ok());  // over the connection of before
+}
+
+}  // namespace
+}  // namespace geosis::server::rpc

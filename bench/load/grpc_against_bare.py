@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
-"""Uploads to and streams from this server's gRPC door, and a bare gRPC server that does nothing with the same messages, in turns;
-and the same upload over HTTP, by curl, which tells how much of an upload is the import.
+"""Uploads to and streams from this server's gRPC door, and a bare gRPC server with the same messages, in turns: one that throws chunks
+away or makes them of zeros, and an echo that sends each back. And the same upload over HTTP, by curl, which tells how much of an upload
+is the import.
 
-    bench/load/grpc_against_bare.py build/release/geosis build/bench/bench/load/grpc_transfer [--rounds 9] [--json FILE]
+    bench/load/grpc_against_bare.py build/release/geosis build/bench/bench/load/grpc_transfer [--rounds 9] [--json FILE] [--folder DIR]
 
 Beside the rates: processor time of the server, and of server and client together, for each megabyte. The upload is imported, checked and stored;
 the streamed level comes from the store, its parts checked.
 """
 import argparse
+import array
 import json
 import os
 import random
@@ -49,6 +51,12 @@ def measured_http(url, path, server):
     return {"MB/s": megabytes / (time.monotonic() - start), "server ms/MB": 1000 * (cpu_of(server) - before) / megabytes}
 
 
+def amplitudes(count):
+    """Random float32 like those of a survey. Of random bits one number in 256 would be none, and its trace decoded apart."""
+    generator = random.Random(1)
+    return array.array("f", (generator.gauss(0, 1000) for _ in range(count))).tobytes()
+
+
 def remove_cube(http):
     for volume in json.loads(call(f"{http}/v1/volumes"))["volumes"]:
         if volume["dims"] == list(DIMS):
@@ -79,41 +87,45 @@ def main():
     parser.add_argument("transfer")
     parser.add_argument("--rounds", type=int, default=9)
     parser.add_argument("--json")
+    parser.add_argument("--folder", help="where the store goes: /dev/shm leaves the disk out")
     options = parser.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory(dir=options.folder) as folder:
         cube = Path(folder, "cube.raw")
-        cube.write_bytes(random.Random(1).randbytes(1 << 20) * (DIMS[0] * DIMS[1] * DIMS[2] * 4 >> 20))
+        cube.write_bytes(amplitudes(1 << 18) * (DIMS[0] * DIMS[1] * DIMS[2] >> 18))
         server = subprocess.Popen([options.geosis, "serve", "--listen", "127.0.0.1:0", "--grpc", "127.0.0.1:0", "--admin", "",
                                    "--store", Path(folder, "store"), "--log-level", "error"], stdout=subprocess.PIPE, text=True)
-        bare = subprocess.Popen([options.transfer, "echo"], stdout=subprocess.PIPE, text=True)
+        bare = subprocess.Popen([options.transfer, "bare"], stdout=subprocess.PIPE, text=True)
         try:
             http = server.stdout.readline().split()[-1]
             ours = server.stdout.readline().split("//")[-1].strip()
-            echo = bare.stdout.readline().strip()
+            other = bare.stdout.readline().strip()
             extraction = noise_extraction(http)
-            runs = {name: [] for name in ("upload", "bare upload", "http upload", "stream", "bare stream")}
+            runs = {name: [] for name in ("upload", "bare upload", "http upload", "stream", "bare stream", "echo")}
             dims = ",".join(map(str, DIMS))
             for _ in range(options.rounds):
                 runs["upload"].append(measured(options.transfer, server.pid, "upload", ours, cube, dims))
-                runs["bare upload"].append(measured(options.transfer, bare.pid, "upload", echo, cube, dims))
+                runs["bare upload"].append(measured(options.transfer, bare.pid, "upload", other, cube, dims))
                 remove_cube(http)
                 runs["http upload"].append(measured_http(f"{http}/v1/volumes?format=raw&dims={dims}", cube, server.pid))
                 remove_cube(http)
                 runs["stream"].append(measured(options.transfer, server.pid, "stream", ours, extraction))
                 bytes_of_levels = runs["stream"][-1]["bytes"]
-                runs["bare stream"].append(measured(options.transfer, bare.pid, "stream", echo, bytes_of_levels))
+                runs["echo"].append(measured(options.transfer, bare.pid, "echo", other, cube))
+                runs["bare stream"].append(measured(options.transfer, bare.pid, "stream", other, bytes_of_levels))
         finally:
             for process in (server, bare):
                 process.terminate()
                 process.wait()
     result = {name: medians(found) for name, found in runs.items()}
-    for mine, other in (("upload", "bare upload"), ("upload", "http upload"), ("stream", "bare stream")):
+    for mine, other in (("upload", "echo"), ("stream", "echo"), ("upload", "bare upload"), ("stream", "bare stream"),
+                        ("upload", "http upload")):
         pairs = zip(runs[mine], runs[other])
         result[f"{mine} / {other}"] = round(statistics.median(one["MB/s"] / two["MB/s"] for one, two in pairs), 3)
     print(json.dumps(result, indent=2))
     if options.json:
         commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True).stdout.strip()
-        machine = {"processors": os.cpu_count(), "load": os.getloadavg()[0], "commit": commit, "rounds": options.rounds}
+        machine = {"processors": os.cpu_count(), "load": os.getloadavg()[0], "commit": commit, "rounds": options.rounds,
+                   "store": options.folder or "disk"}
         Path(options.json).write_text(json.dumps({"machine": machine, **result}, indent=2) + "\n", encoding="utf-8")
 
 

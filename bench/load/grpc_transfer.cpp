@@ -1,18 +1,21 @@
 // A bare gRPC server with our messages that does nothing, and a client that measures it or ours.
 //
-//     grpc_transfer echo                           prints its port; takes uploads and streams chunks of zeros
-//     grpc_transfer upload ADDRESS FILE I,J,K      uploads raw float32 samples in chunks of 256 KiB
+//     grpc_transfer bare                           prints its port; takes uploads, streams chunks of zeros, sends
+//     chunks back grpc_transfer upload ADDRESS FILE I,J,K      uploads raw float32 samples in chunks of 256 KiB
 //     grpc_transfer stream ADDRESS ID              reads all levels; of the bare server ID = number of bytes
+//     grpc_transfer echo ADDRESS FILE              the file in chunks of 256 KiB to the bare server, and back again
 //
 // The client prints {"bytes": ..., "seconds": ..., "cpu_seconds": ...}.
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <thread>
 
 #include <geosis/v1/extraction.grpc.pb.h>
 #include <geosis/v1/volume.grpc.pb.h>
@@ -67,6 +70,28 @@ class Spring final : public grpc::ServerWriteReactor<v1::LodChunk> {
   std::size_t left_;
 };
 
+/// Sends each chunk back before it takes the next one.
+class Echo final : public grpc::ServerBidiReactor<v1::ExtractRequest, v1::LodChunk> {
+ public:
+  Echo() { StartRead(&message_); }
+  void OnReadDone(bool ok) override {
+    if (!ok) return Finish(grpc::Status::OK);
+    answer_.mutable_part()->set_allocated_data(message_.release_chunk());
+    StartWrite(&answer_);
+  }
+  void OnWriteDone(bool ok) override {
+    if (ok)
+      StartRead(&message_);
+    else
+      Finish(grpc::Status::CANCELLED);
+  }
+  void OnDone() override { delete this; }
+
+ private:
+  v1::ExtractRequest message_;
+  v1::LodChunk answer_;
+};
+
 class BareVolumes final : public v1::VolumeService::CallbackService {
   grpc::ServerReadReactor<v1::UploadVolumeRequest>* UploadVolume(grpc::CallbackServerContext*,
                                                                  v1::UploadVolumeResponse*) override {
@@ -78,6 +103,9 @@ class BareExtractions final : public v1::ExtractionService::CallbackService {
   grpc::ServerWriteReactor<v1::LodChunk>* StreamLods(grpc::CallbackServerContext*,
                                                      const v1::StreamLodsRequest* request) override {
     return new Spring(std::strtoull(request->id().c_str(), nullptr, 10));
+  }
+  grpc::ServerBidiReactor<v1::ExtractRequest, v1::LodChunk>* Extract(grpc::CallbackServerContext*) override {
+    return new Echo;
   }
 };
 
@@ -103,19 +131,36 @@ double cpu_seconds() {
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-int report(const grpc::Status& status, std::size_t bytes, Clock::time_point start) {
+struct Start {
+  Clock::time_point time = Clock::now();
+  double cpu = cpu_seconds();
+};
+
+int report(const grpc::Status& status, std::size_t bytes, const Start& start) {
   if (!status.ok()) {
     std::fprintf(stderr, "%d: %s\n", int{status.error_code()}, status.error_message().c_str());
     return 1;
   }
   std::printf("{\"bytes\": %zu, \"seconds\": %.6f, \"cpu_seconds\": %.6f}\n", bytes,
-              std::chrono::duration<double>(Clock::now() - start).count(), cpu_seconds());
+              std::chrono::duration<double>(Clock::now() - start.time).count(), cpu_seconds() - start.cpu);
   return 0;
 }
 
+std::string read_file(const char* path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  std::string bytes(static_cast<std::size_t>(file.tellg()), '\0');
+  file.seekg(0).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return bytes;
+}
+
+std::shared_ptr<grpc::Channel> connect(const std::string& address) {
+  const auto channel = grpc::CreateChannel(address, grpc::InsecureChannelCredentials());
+  channel->WaitForConnected(std::chrono::system_clock::now() + std::chrono::seconds(10));
+  return channel;
+}
+
 int upload(const std::string& address, const char* path, const char* dims) {
-  std::ifstream file(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const std::string bytes = read_file(path);
   v1::UploadVolumeRequest message;
   auto& import = *message.mutable_options()->mutable_import();
   import.set_format("raw");
@@ -124,9 +169,8 @@ int upload(const std::string& address, const char* path, const char* dims) {
   import.mutable_dims()->set_inlines(counts[0]);
   import.mutable_dims()->set_crosslines(counts[1]);
   import.mutable_dims()->set_samples(counts[2]);
-  const auto channel = grpc::CreateChannel(address, grpc::InsecureChannelCredentials());
-  channel->WaitForConnected(std::chrono::system_clock::now() + std::chrono::seconds(10));
-  const auto start = Clock::now();
+  const auto channel = connect(address);
+  const Start start;
   const auto stub = v1::VolumeService::NewStub(channel);
   grpc::ClientContext context;
   v1::UploadVolumeResponse response;
@@ -141,9 +185,8 @@ int upload(const std::string& address, const char* path, const char* dims) {
 }
 
 int stream(const std::string& address, const char* id) {
-  const auto channel = grpc::CreateChannel(address, grpc::InsecureChannelCredentials());
-  channel->WaitForConnected(std::chrono::system_clock::now() + std::chrono::seconds(10));
-  const auto start = Clock::now();
+  const auto channel = connect(address);
+  const Start start;
   const auto stub = v1::ExtractionService::NewStub(channel);
   grpc::ClientContext context;
   v1::StreamLodsRequest request;
@@ -154,13 +197,37 @@ int stream(const std::string& address, const char* id) {
   return report(reader->Finish(), bytes, start);
 }
 
+int echo(const std::string& address, const char* path) {
+  const std::string bytes = read_file(path);
+  const auto channel = connect(address);
+  const Start start;
+  const auto stub = v1::ExtractionService::NewStub(channel);
+  grpc::ClientContext context;
+  const auto both = stub->Extract(&context);
+  std::thread writer([&] {
+    v1::ExtractRequest message;
+    bool is_open = true;
+    for (std::size_t at = 0; is_open && at < bytes.size(); at += kChunk) {
+      message.set_chunk(bytes.data() + at, std::min(kChunk, bytes.size() - at));
+      is_open = both->Write(message);
+    }
+    both->WritesDone();
+  });
+  std::size_t back = 0;
+  for (v1::LodChunk chunk; both->Read(&chunk);) back += chunk.part().data().size();
+  writer.join();
+  return report(both->Finish(), back, start);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::string_view what = argc > 1 ? argv[1] : "";
-  if (what == "echo") return serve();
+  if (what == "bare") return serve();
   if (what == "upload" && argc == 5) return upload(argv[2], argv[3], argv[4]);
   if (what == "stream" && argc == 4) return stream(argv[2], argv[3]);
-  std::fprintf(stderr, "usage: grpc_transfer echo | upload ADDRESS FILE I,J,K | stream ADDRESS ID\n");
+  if (what == "echo" && argc == 4) return echo(argv[2], argv[3]);
+  std::fprintf(stderr,
+               "usage: grpc_transfer bare | upload ADDRESS FILE I,J,K | stream ADDRESS ID | echo ADDRESS FILE\n");
   return 2;
 }

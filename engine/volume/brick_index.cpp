@@ -12,8 +12,6 @@ namespace geosis {
 namespace {
 
 constexpr ValueRange kEmpty{std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()};
-constexpr std::size_t kLanes = 8;
-
 using BlockRow = std::array<ValueRange, kBlocksPerAxis>;
 
 // NaN never wins a comparison, so missing samples fall out by themselves.
@@ -27,35 +25,33 @@ void include(ValueRange& range, const ValueRange& other) {
   range.max = other.max > range.max ? other.max : range.max;
 }
 
-// Sixteen samples in lanes that do not depend on each other: the order is fixed and the compiler may use vectors.
-ValueRange range_of_sixteen(const float* samples) {
-  std::array<float, kLanes> low, high;
-  for (std::size_t l = 0; l < kLanes; ++l) {
-    low[l] = samples[l] < kEmpty.min ? samples[l] : kEmpty.min;
-    high[l] = samples[l] > kEmpty.max ? samples[l] : kEmpty.max;
-  }
-  for (std::size_t l = 0; l < kLanes; ++l) {
-    low[l] = samples[kLanes + l] < low[l] ? samples[kLanes + l] : low[l];
-    high[l] = samples[kLanes + l] > high[l] ? samples[kLanes + l] : high[l];
-  }
-  ValueRange range = kEmpty;
-  for (std::size_t l = 0; l < kLanes; ++l) include(range, ValueRange{low[l], high[l]});
-  return range;
-}
+/// Ranges at each sample of the rows of some blocks: rows go in as vectors, and only the end looks along them.
+struct Envelope {
+  std::array<float, kBrickCells + 1> min, max;
 
-// Ranges of the blocks along one row of n samples; a block without cells stays empty, but the first one always counts.
-BlockRow ranges_along(const float* row, std::int32_t n) {
+  explicit Envelope(std::size_t length) {
+    std::fill_n(min.begin(), length, kEmpty.min);
+    std::fill_n(max.begin(), length, kEmpty.max);
+  }
+  void add_row(const float* row, std::size_t length) {
+    for (std::size_t k = 0; k < length; ++k) {
+      const float value = row[k];
+      min[k] = value < min[k] ? value : min[k];
+      max[k] = value > max[k] ? value : max[k];
+    }
+  }
+};
+
+// Ranges of the blocks along rows of n samples; a block without cells stays empty, but the first one always counts.
+BlockRow ranges_along(const Envelope& rows, std::int32_t n) {
   BlockRow ranges;
   ranges.fill(kEmpty);
   for (std::int32_t c = 0; c == 0 || c * kBlockCells < n - 1; ++c) {
     const std::int32_t begin = c * kBlockCells;
-    ValueRange& range = ranges[static_cast<std::size_t>(c)];
-    std::int32_t k = begin;
-    if (begin + kBlockCells <= n) {
-      range = range_of_sixteen(row + begin);
-      k = begin + kBlockCells;
+    for (std::int32_t k = begin; k < n && k <= begin + kBlockCells; ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      include(ranges[static_cast<std::size_t>(c)], ValueRange{rows.min[at], rows.max[at]});
     }
-    for (; k < n && k <= begin + kBlockCells; ++k) include(range, row[k]);
   }
   return ranges;
 }
@@ -69,6 +65,7 @@ std::size_t count_missing(std::span<const float> samples) {
 // Blocks of one axis that the layer at `position` of n belongs to: one, or two where blocks meet.
 struct BlockSpan {
   std::int32_t first, last;
+  bool operator==(const BlockSpan&) const = default;
 };
 BlockSpan blocks_at(std::int32_t position, std::int32_t n) {
   const std::int32_t last_block = n < 2 ? 0 : (n - 2) / kBlockCells;
@@ -92,18 +89,30 @@ BrickIndexer::BrickIndexer(GridShape extent, std::span<ValueRange, kBlocksPerBri
 
 void BrickIndexer::add_rows(std::span<const float> samples) {
   const auto length = static_cast<std::size_t>(extent_.samples);
-  for (std::size_t begin = 0; begin < samples.size(); begin += length, ++rows_) {
-    const BlockSpan along_i = blocks_at(static_cast<std::int32_t>(rows_ / extent_.crosslines), extent_.inlines);
-    const BlockSpan along_j = blocks_at(static_cast<std::int32_t>(rows_ % extent_.crosslines), extent_.crosslines);
-    const BlockRow ranges = ranges_along(samples.data() + begin, extent_.samples);
-    for (std::int32_t p = along_i.first; p <= along_i.last; ++p)
-      for (std::int32_t q = along_j.first; q <= along_j.last; ++q)
-        for (std::int32_t c = 0; c < kBlocksPerAxis; ++c)
-          include(blocks_[static_cast<std::size_t>((p * kBlocksPerAxis + q) * kBlocksPerAxis + c)],
-                  ranges[static_cast<std::size_t>(c)]);
-  }
+  for (auto left = samples; !left.empty();) left = left.subspan(add_rows_of_same_blocks(left) * length);
   missing_ += static_cast<std::int64_t>(count_missing(samples));
   XXH3_64bits_update(checksum_.get(), samples.data(), samples.size_bytes());
+}
+
+std::size_t BrickIndexer::add_rows_of_same_blocks(std::span<const float> samples) {
+  const auto length = static_cast<std::size_t>(extent_.samples);
+  const std::size_t rows = samples.size() / length;
+  const std::int64_t crosslines = extent_.crosslines;
+  const BlockSpan along_i = blocks_at(static_cast<std::int32_t>(rows_ / crosslines), extent_.inlines);
+  auto j = static_cast<std::int32_t>(rows_ % crosslines);
+  const BlockSpan along_j = blocks_at(j, extent_.crosslines);
+  Envelope envelope(length);
+  std::size_t count = 0;
+  for (; count < rows && j < crosslines && blocks_at(j, extent_.crosslines) == along_j; ++count, ++j)
+    envelope.add_row(samples.data() + count * length, length);
+  const BlockRow ranges = ranges_along(envelope, extent_.samples);
+  for (std::int32_t p = along_i.first; p <= along_i.last; ++p)
+    for (std::int32_t q = along_j.first; q <= along_j.last; ++q)
+      for (std::int32_t c = 0; c < kBlocksPerAxis; ++c)
+        include(blocks_[static_cast<std::size_t>((p * kBlocksPerAxis + q) * kBlocksPerAxis + c)],
+                ranges[static_cast<std::size_t>(c)]);
+  rows_ += static_cast<std::int64_t>(count);
+  return count;
 }
 
 StoredSummary BrickIndexer::summary() const {

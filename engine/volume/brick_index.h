@@ -33,6 +33,9 @@ class BrickIndexer {
     void operator()(XXH3_state_s* checksum) const;
   };
 
+  /// The first of these rows that belong to the same blocks. returns: how many.
+  std::size_t add_rows_of_same_blocks(std::span<const float> samples);
+
   GridShape extent_;
   std::span<ValueRange, kBlocksPerBrick> blocks_;
   std::unique_ptr<XXH3_state_s, FreeChecksum> checksum_;

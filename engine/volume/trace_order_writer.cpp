@@ -5,9 +5,15 @@
 #include <vector>
 
 namespace geosis {
+namespace {
+
+constexpr std::size_t kRowsAtOnce = 64;  // 16 KB: indexed while the nearest cache holds them
+
+}  // namespace
 
 TraceOrderWriter::TraceOrderWriter(BrickWriter& writer)
     : writer_(writer),
+      rows_(static_cast<std::size_t>(writer.layout().grid().crosslines)),
       indexers_(static_cast<std::size_t>(writer.layout().grid().crosslines) *
                 static_cast<std::size_t>(writer.layout().grid().samples)) {}
 
@@ -48,22 +54,24 @@ Result<void> TraceOrderWriter::put_in_brick(GridIndex place, std::int64_t first_
   const BrickLayout& layout = writer_.layout();
   const std::size_t brick = layout.number(place);
   const auto row = static_cast<std::size_t>(layout.extent(place).samples);
-  std::vector<float> rows(traces.size() * row);
-  float* to = rows.data();
-  for (const float* trace : traces) {
-    std::memcpy(to, trace + layout.first_node(place).k, row * sizeof(float));
-    to += row;
-  }
+  std::vector<float>& rows = rows_[static_cast<std::size_t>(place.j)];
+  if (rows.size() < traces.size() * row) rows.resize(traces.size() * row);
 
   auto& indexer = indexers_[static_cast<std::size_t>(place.j) * static_cast<std::size_t>(layout.grid().samples) +
                             static_cast<std::size_t>(place.k)];
   if (!indexer) indexer.emplace(writer_.indexer(brick));
-  indexer->add_rows(rows);
+  for (std::size_t begin = 0; begin < traces.size(); begin += kRowsAtOnce) {
+    const std::size_t count = std::min(kRowsAtOnce, traces.size() - begin);
+    float* const to = rows.data() + begin * row;
+    for (std::size_t r = 0; r < count; ++r)
+      std::memcpy(to + r * row, traces[begin + r] + layout.first_node(place).k, row * sizeof(float));
+    indexer->add_rows({to, count * row});
+  }
   if (indexer->is_complete()) {
     writer_.set_summary(brick, indexer->summary());
     indexer.reset();
   }
-  return writer_.write_rows(brick, first_row, rows);
+  return writer_.write_rows(brick, first_row, std::span(rows).first(traces.size() * row));
 }
 
 }  // namespace geosis

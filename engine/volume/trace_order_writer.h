@@ -18,7 +18,9 @@ namespace geosis {
 ///     TraceOrderWriter traces(writer);
 ///     parallel_for(traces.columns(), ...  traces.put(column, i, j, pointers));   // all traces of the column, in order
 ///
-/// memory  0.6 KB for each brick of one layer, once its first rows are there; 16 KB for each call.
+/// memory  0.6 KB for each brick of one layer, once its first rows are there; for each column the samples that go to
+/// one
+///         brick at once.
 class TraceOrderWriter {
  public:
   /// writer must live as long.
@@ -38,6 +40,7 @@ class TraceOrderWriter {
   Result<void> put_in_brick(GridIndex place, std::int64_t first_row, std::span<const float* const> traces);
 
   BrickWriter& writer_;
+  std::vector<std::vector<float>> rows_;               ///< of each column, on their way
   std::vector<std::optional<BrickIndexer>> indexers_;  ///< of the bricks of one layer that have begun
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 namespace geosis::server::rpc {
@@ -34,16 +35,18 @@ void ChunkInbox::expect(std::string sha256, std::optional<std::uint64_t> bytes) 
   stated_bytes_ = bytes;
 }
 
-bool ChunkInbox::put(std::string chunk) {
+bool ChunkInbox::put(Slices chunk) {
+  std::uint64_t bytes = 0;
+  for (const grpc::Slice& slice : chunk) bytes += slice.size();
   const std::lock_guard lock(mutex_);
   if (broken_) return false;
-  received_ += chunk.size();
+  received_ += bytes;
   if (received_ > options_.most_bytes) {
     broken_ = Error{ErrorCode::limit_exceeded, "the file is larger than the " + std::to_string(options_.most_bytes) +
                                                    " bytes that this server takes"};
-  } else if (!chunk.empty()) {
-    held_ += chunk.size();
-    chunks_.push_back(std::move(chunk));
+  } else if (bytes > 0) {
+    held_ += bytes;
+    std::move(chunk.begin(), chunk.end(), std::back_inserter(arrived_));
   }
   changed_.notify_one();
   if (broken_) return false;
@@ -68,27 +71,50 @@ void ChunkInbox::break_off(Error error) {
 }
 
 Result<std::size_t> ChunkInbox::read(std::span<std::byte> into) {
-  std::unique_lock lock(mutex_);
-  if (auto came = wait(lock); !came) return std::move(came).error();
-  if (chunks_.empty() || into.empty()) return std::size_t{0};
-  const std::size_t count = std::min(into.size(), chunks_.front().size() - begin_);
-  std::memcpy(into.data(), chunks_.front().data() + begin_, count);
-  begin_ += count;
-  held_ -= count;
-  if (begin_ == chunks_.front().size()) {
-    chunks_.pop_front();
-    begin_ = 0;
+  {
+    std::unique_lock lock(mutex_);
+    if (broken_) return *broken_;
+    if (is_all_read()) {
+      if (auto came = wait(lock); !came) return std::move(came).error();
+      reading_.clear();
+      reading_.swap(arrived_);
+      next_ = 0;
+    }
   }
-  const bool asks = held_ < kMostHeld && std::exchange(is_asking_owed_, false);
-  lock.unlock();
-  if (asks) ask_for_more_();
+  const std::size_t count = take(into);
+  release(count);
   rate_.add(count, {});
   if (!sha256_.empty()) digest_.update(into.first(count));
   return count;
 }
 
+std::size_t ChunkInbox::take(std::span<std::byte> into) {
+  std::size_t count = 0;
+  while (!is_all_read() && count < into.size()) {
+    const grpc::Slice& slice = reading_[next_];
+    const std::size_t piece = std::min(into.size() - count, slice.size() - begin_);
+    std::memcpy(into.data() + count, slice.begin() + begin_, piece);
+    count += piece;
+    begin_ += piece;
+    if (begin_ < slice.size()) break;
+    reading_[next_++] = grpc::Slice();  // gRPC's memory is free again
+    begin_ = 0;
+  }
+  return count;
+}
+
+void ChunkInbox::release(std::size_t count) {
+  bool asks = false;
+  {
+    const std::lock_guard lock(mutex_);
+    held_ -= count;
+    asks = held_ < kMostHeld && std::exchange(is_asking_owed_, false);
+  }
+  if (asks) ask_for_more_();
+}
+
 Result<void> ChunkInbox::wait(std::unique_lock<std::mutex>& lock) {
-  while (!broken_ && chunks_.empty() && !has_ended_) {
+  while (!broken_ && arrived_.empty() && !has_ended_) {
     const auto start = std::chrono::steady_clock::now();
     changed_.wait_for(lock, kLook);
     if (rate_.add(0, std::chrono::steady_clock::now() - start)) continue;

@@ -3,20 +3,21 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "engine/base/digest.h"
 #include "server/app/body_reader.h"
+#include "server/grpc/wire.h"
 #include "server/net/rate_guard.h"
 
 namespace geosis::server::rpc {
 
 /// The chunks of a client's stream as the body of a file: gRPC's threads put them in, an upload's thread reads them.
-/// Two chunks are held at most; the client is asked for more when one has been read.
+/// Not much more than two megabytes are held; the client is asked for more when some have been read.
 class ChunkInbox final : public CheckedBody {
  public:
   struct Options {
@@ -32,7 +33,7 @@ class ChunkInbox final : public CheckedBody {
   /// What the sender has stated of the file: its digest, 32 bytes or empty, and its size. Before the first read.
   void expect(std::string sha256, std::optional<std::uint64_t> bytes);
   /// True: receive the next message now. False: that will be asked for.
-  bool put(std::string chunk);
+  bool put(Slices chunk);
   /// The client has sent all.
   void end();
   /// Nothing more comes, and what is here is worth nothing. The first error stays.
@@ -43,21 +44,27 @@ class ChunkInbox final : public CheckedBody {
   Result<void> check() override;
 
  private:
-  /// Waits for a chunk or the end. errors: as BodyReader.
+  /// Waits for bytes or the end. errors: as BodyReader.
   Result<void> wait(std::unique_lock<std::mutex>& lock);
+  bool is_all_read() const { return next_ == reading_.size(); }
+  /// Moves bytes that are here already. returns: how many.
+  std::size_t take(std::span<std::byte> into);
+  /// Room for others where these bytes were.
+  void release(std::size_t count);
 
   const Options options_;
   const std::function<void()> ask_for_more_;
   std::mutex mutex_;  ///< of what follows
   std::condition_variable changed_;
-  std::deque<std::string> chunks_;
-  std::size_t begin_ = 0;  ///< of the first chunk, what is not read yet
+  Slices arrived_;
   std::uint64_t received_ = 0, held_ = 0;
   bool is_asking_owed_ = false, has_ended_ = false;
   std::string sha256_;
   std::optional<std::uint64_t> stated_bytes_;
   std::optional<Error> broken_;
   // Of the reading thread:
+  Slices reading_;                    ///< what had arrived when it last looked
+  std::size_t next_ = 0, begin_ = 0;  ///< slice of these, and byte of that, where it goes on
   RateGuard rate_;
   Sha256 digest_;
 };

@@ -27,8 +27,7 @@ class ExtractCall final : public Streaming {
     using Next = FileReceiver<v1::ExtractRequest>::Next;
     call().client_came();
     if (ok) call().count_in(bytes_.Length());
-    if (ok && !parse(bytes_, message_)) message_.Clear();  // which is neither options nor a chunk
-    switch (receiver_.take(message_, ok)) {
+    switch (receiver_.take(bytes_, ok)) {
       case Next::read_more:
         return receiver_.has_started() ? StartRead(&bytes_) : read();
       case Next::wait:
@@ -86,7 +85,6 @@ class ExtractCall final : public Streaming {
   }
 
   grpc::ByteBuffer bytes_;
-  v1::ExtractRequest message_;
   FileReceiver<v1::ExtractRequest> receiver_;
   std::atomic<bool> has_left_{false};
 };

@@ -9,6 +9,7 @@
 #include "server/grpc/message_codec.h"
 #include "server/grpc/streaming.h"
 #include "server/grpc/unary_call.h"
+#include "server/grpc/wire.h"
 
 namespace geosis::server::rpc {
 namespace {

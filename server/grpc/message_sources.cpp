@@ -9,10 +9,10 @@
 
 #include <google/protobuf/io/coded_stream.h>
 #include <google/protobuf/io/zero_copy_stream_impl_lite.h>
-#include <grpcpp/impl/codegen/proto_utils.h>
 #include <grpcpp/support/slice.h>
 
 #include "server/grpc/message_codec.h"
+#include "server/grpc/wire.h"
 
 namespace geosis::server::rpc {
 namespace {
@@ -114,8 +114,7 @@ class LodSource final : public MessageSource<grpc::ByteBuffer> {
   static grpc::ByteBuffer wire_manifest(const Json& manifest) {
     v1::LodChunk chunk;
     set_message(*chunk.mutable_manifest(), manifest);
-    const grpc::Slice bytes(chunk.SerializeAsString());
-    return {&bytes, 1};
+    return serialized(chunk);
   }
 
   void begin(LevelPart part) {
@@ -144,11 +143,6 @@ class LodSource final : public MessageSource<grpc::ByteBuffer> {
 };
 
 }  // namespace
-
-bool parse(const grpc::ByteBuffer& bytes, google::protobuf::Message& message) {
-  grpc::ByteBuffer read = bytes;  // which is emptied; the bytes themselves are shared
-  return grpc::SerializationTraits<google::protobuf::Message>::Deserialize(&read, &message).ok();
-}
 
 std::unique_ptr<MessageSource<v1::ExtractionEvent>> event_source(std::shared_ptr<Extraction> extraction,
                                                                  std::uint64_t after) {

@@ -26,17 +26,6 @@ class MessageSource {
   virtual void on_ready(std::function<void()> bell) = 0;
 };
 
-/// False: the bytes are none of these messages.
-bool parse(const grpc::ByteBuffer& bytes, google::protobuf::Message& message);
-
-/// Of a message on the wire.
-inline std::size_t wire_bytes(const google::protobuf::Message& message) {
-  return message.ByteSizeLong();
-}
-inline std::size_t wire_bytes(const grpc::ByteBuffer& message) {
-  return message.Length();
-}
-
 /// after   id of the last event that the reader knows; after the very last one there is nothing to say.
 std::unique_ptr<MessageSource<v1::ExtractionEvent>> event_source(std::shared_ptr<Extraction> extraction,
                                                                  std::uint64_t after);

@@ -8,12 +8,15 @@
 #include <string>
 #include <utility>
 
+#include <grpcpp/support/byte_buffer.h>
+
 #include "engine/base/progress.h"
 #include "server/app/volumes.h"
 #include "server/documents/import_options.h"
 #include "server/grpc/call.h"
 #include "server/grpc/chunk_inbox.h"
 #include "server/grpc/message_codec.h"
+#include "server/grpc/wire.h"
 
 namespace geosis::server::rpc {
 
@@ -26,8 +29,7 @@ struct FileOptions {
 
 /// options   UploadOptions or ExtractOptions of the contract.
 /// errors    invalid_argument: an option that takes no such value, a digest that is none.  limit_exceeded: more bytes
-/// than
-///           this server takes.
+///           than this server takes.
 template <class Options>
 Result<FileOptions> file_options(const Options& options, const CallRoom& room) {
   FileOptions file;
@@ -65,18 +67,11 @@ class FileReceiver {
 
   /// A message, or the stream's end (!ok). What to do: receive another one, wait until asked to, start the file's
   /// thread, or end the call with refusal().
-  Next take(Message& message, bool ok) {
+  Next take(const grpc::ByteBuffer& message, bool ok) {
     if (!file_) return ok ? take_options(message) : refuse("the stream ends before its options");
-    bool reads_on = false;
-    if (!ok)
-      inbox_.end();
-    else if (message.content_case() == Message::kChunk)
-      reads_on = inbox_.put(std::move(*message.mutable_chunk()));
-    else
-      inbox_.break_off({ErrorCode::invalid_argument, "options come once, in the first message"});
-    reads_on_ = reads_on;
+    reads_on_ = ok ? take_chunk(message) : end();
     if (!std::exchange(has_started_, true)) return Next::start;
-    return reads_on ? Next::read_more : Next::wait;
+    return reads_on_ ? Next::read_more : Next::wait;
   }
   bool has_started() const { return has_started_; }
   /// After start: whether to receive another message at once.
@@ -89,14 +84,27 @@ class FileReceiver {
   ChunkInbox& inbox() { return inbox_; }
 
  private:
-  Next take_options(Message& message) {
-    if (message.content_case() != Message::kOptions) return refuse("the first message must hold the options");
-    options_.Swap(&message);
+  Next take_options(const grpc::ByteBuffer& bytes) {
+    if (!parse(bytes, options_) || options_.content_case() != Message::kOptions)
+      return refuse("the first message must hold the options");
     auto file = file_options(options_.options(), room_);
     if (!file) return refuse(std::move(file).error());
     inbox_.expect(file->sha256, file->bytes);
     file_ = *std::move(file);
     return Next::read_more;
+  }
+  /// Both: whether to receive another one at once.
+  bool take_chunk(const grpc::ByteBuffer& bytes) {
+    if (auto chunk = only_field(bytes, Message::kChunkFieldNumber)) return inbox_.put(*std::move(chunk));
+    Message message;
+    if (parse(bytes, message) && message.content_case() == Message::kChunk)
+      return inbox_.put({grpc::Slice(message.chunk())});
+    inbox_.break_off({ErrorCode::invalid_argument, "each message after the options must hold a chunk"});
+    return false;
+  }
+  bool end() {
+    inbox_.end();
+    return false;
   }
   Next refuse(const char* why) { return refuse(Error{ErrorCode::invalid_argument, why}); }
   Next refuse(Error error) {

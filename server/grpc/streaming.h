@@ -14,6 +14,7 @@
 #include "server/grpc/call.h"
 #include "server/grpc/message_sources.h"
 #include "server/grpc/strand.h"
+#include "server/grpc/wire.h"
 
 namespace geosis::server::rpc {
 

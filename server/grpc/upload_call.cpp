@@ -5,20 +5,23 @@
 #include <utility>
 #include <vector>
 
+#include <geosis/v1/volume.pb.h>
+
 #include "server/app/uploads.h"
 #include "server/grpc/message_codec.h"
 #include "server/grpc/receiving.h"
+#include "server/grpc/wire.h"
 
 namespace geosis::server::rpc {
 namespace {
 
-class UploadCall final : public grpc::ServerReadReactor<v1::UploadVolumeRequest> {
+class UploadCall final : public grpc::ServerReadReactor<grpc::ByteBuffer> {
  public:
-  UploadCall(CallRoom& room, grpc::CallbackServerContext& context, v1::UploadVolumeResponse& response)
+  UploadCall(CallRoom& room, grpc::CallbackServerContext& context, grpc::ByteBuffer& response)
       : call_(room, context, "geosis.v1.VolumeService/UploadVolume", Access::write),
         context_(context),
         response_(response),
-        receiver_(room, [this] { StartRead(&message_); }) {}
+        receiver_(room, [this] { StartRead(&bytes_); }) {}
 
   /// Owned by gRPC until OnDone, and by the file's thread.
   void start(std::shared_ptr<UploadCall> self) {
@@ -30,16 +33,16 @@ class UploadCall final : public grpc::ServerReadReactor<v1::UploadVolumeRequest>
   void OnReadDone(bool ok) override {
     using Next = FileReceiver<v1::UploadVolumeRequest>::Next;
     call_.client_came();
-    if (ok) call_.count_in(message_.ByteSizeLong());
-    switch (receiver_.take(message_, ok)) {
+    if (ok) call_.count_in(bytes_.Length());
+    switch (receiver_.take(bytes_, ok)) {
       case Next::read_more:
-        return receiver_.has_started() ? StartRead(&message_) : read();
+        return receiver_.has_started() ? StartRead(&bytes_) : read();
       case Next::wait:
         return;
       case Next::start:
         if (!call_.room().uploads.start(call_.peer(), [self = self_] { self->run(); }))
           return Finish(call_.failed(too_busy()));
-        if (receiver_.reads_on()) StartRead(&message_);
+        if (receiver_.reads_on()) StartRead(&bytes_);
         return;
       case Next::refuse:
         return Finish(call_.failed(receiver_.refusal()));
@@ -57,7 +60,7 @@ class UploadCall final : public grpc::ServerReadReactor<v1::UploadVolumeRequest>
  private:
   void read() {
     call_.expect_client(call_.room().patience);
-    StartRead(&message_);
+    StartRead(&bytes_);
   }
 
   /// On the file's own thread.
@@ -109,16 +112,18 @@ class UploadCall final : public grpc::ServerReadReactor<v1::UploadVolumeRequest>
 
   Result<void> answer(const Result<UploadResult>& added) {
     if (!added) return added.error();
-    set_message(*response_.mutable_volume(), added->document);
-    response_.set_is_new(added->is_new);
-    call_.count_out(response_.ByteSizeLong());
+    v1::UploadVolumeResponse response;
+    set_message(*response.mutable_volume(), added->document);
+    response.set_is_new(added->is_new);
+    response_ = serialized(response);
+    call_.count_out(response_.Length());
     return {};
   }
 
   Call call_;
   grpc::CallbackServerContext& context_;
-  v1::UploadVolumeResponse& response_;
-  v1::UploadVolumeRequest message_;
+  grpc::ByteBuffer& response_;
+  grpc::ByteBuffer bytes_;
   FileReceiver<v1::UploadVolumeRequest> receiver_;
   std::atomic<bool> has_left_{false};
   std::shared_ptr<UploadCall> self_;
@@ -126,8 +131,8 @@ class UploadCall final : public grpc::ServerReadReactor<v1::UploadVolumeRequest>
 
 }  // namespace
 
-grpc::ServerReadReactor<v1::UploadVolumeRequest>* start_upload(CallRoom& room, grpc::CallbackServerContext* context,
-                                                               v1::UploadVolumeResponse* response) {
+grpc::ServerReadReactor<grpc::ByteBuffer>* start_upload(CallRoom& room, grpc::CallbackServerContext* context,
+                                                        grpc::ByteBuffer* response) {
   const auto call = std::make_shared<UploadCall>(room, *context, *response);
   call->start(call);
   return call.get();

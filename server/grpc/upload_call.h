@@ -1,14 +1,14 @@
 #pragma once
 
-#include <geosis/v1/volume.pb.h>
+#include <grpcpp/support/byte_buffer.h>
 #include <grpcpp/support/server_callback.h>
 
 #include "server/grpc/call.h"
 
 namespace geosis::server::rpc {
 
-/// UploadVolume: a file in, its volume out.
-grpc::ServerReadReactor<v1::UploadVolumeRequest>* start_upload(CallRoom& room, grpc::CallbackServerContext* context,
-                                                               v1::UploadVolumeResponse* response);
+/// UploadVolume: a file in, its volume out. Messages as they are on the wire: only_field() says why.
+grpc::ServerReadReactor<grpc::ByteBuffer>* start_upload(CallRoom& room, grpc::CallbackServerContext* context,
+                                                        grpc::ByteBuffer* response);
 
 }  // namespace geosis::server::rpc

@@ -21,8 +21,8 @@ Result<int> bounded(const char* field, int number, int otherwise, int most) {
 
 }  // namespace
 
-grpc::ServerReadReactor<v1::UploadVolumeRequest>* VolumeServiceDoor::UploadVolume(grpc::CallbackServerContext* context,
-                                                                                  v1::UploadVolumeResponse* response) {
+grpc::ServerReadReactor<grpc::ByteBuffer>* VolumeServiceDoor::UploadVolume(grpc::CallbackServerContext* context,
+                                                                           grpc::ByteBuffer* response) {
   return start_upload(room_, context, response);
 }
 

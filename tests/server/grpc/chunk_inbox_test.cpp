@@ -16,6 +16,10 @@ ChunkInbox::Options options(std::uint64_t most = 1 << 20) {
   return {.most_bytes = most, .bytes_per_second = 1000, .window = 100ms};
 }
 
+Slices chunk(const std::string& bytes) {
+  return {grpc::Slice(bytes)};
+}
+
 /// All that comes, or the error's code.
 std::string read_all(ChunkInbox& inbox, std::size_t piece = 3) {
   std::string all;
@@ -32,8 +36,8 @@ TEST(ChunkInbox, GivesTheBytesInOrder) {
   int asked = 0;
   ChunkInbox inbox(options(4 << 20), [&] { ++asked; });
   const std::string most(2 << 20, 'x');
-  EXPECT_TRUE(inbox.put("hello "));
-  EXPECT_FALSE(inbox.put(most));  // that is enough
+  EXPECT_TRUE(inbox.put(chunk("hello ")));
+  EXPECT_FALSE(inbox.put(chunk(most)));  // that is enough
   EXPECT_EQ(asked, 0);
   inbox.end();
   EXPECT_EQ(read_all(inbox, 1000), "hello " + most);
@@ -47,9 +51,9 @@ TEST(ChunkInbox, AsksOnceForEachMessageThatItPutOff) {
   std::thread reader([&] { got = read_all(inbox, 100'000); });
   std::string sent;
   for (int n = 0; n < 60; ++n) {
-    const std::string chunk(static_cast<std::size_t>(n % 7) << 18, static_cast<char>('a' + n % 26));
-    sent += chunk;
-    if (inbox.put(chunk)) continue;
+    const std::string bytes(static_cast<std::size_t>(n % 7) << 18, static_cast<char>('a' + n % 26));
+    sent += bytes;
+    if (inbox.put(chunk(bytes))) continue;
     while (owed == 0) std::this_thread::yield();
     --owed;
   }
@@ -61,24 +65,24 @@ TEST(ChunkInbox, AsksOnceForEachMessageThatItPutOff) {
 
 TEST(ChunkInbox, BreaksOffAtOnceWhateverIsHere) {
   ChunkInbox inbox(options(), [] {});
-  inbox.put("something");
+  inbox.put(chunk("something"));
   inbox.break_off({ErrorCode::cancelled, "left"});
   inbox.break_off({ErrorCode::internal, "later"});
   inbox.end();
   EXPECT_EQ(read_all(inbox), "cancelled");
-  EXPECT_FALSE(inbox.put("more"));
+  EXPECT_FALSE(inbox.put(chunk("more")));
 }
 
 TEST(ChunkInbox, RefusesMoreThanTheLimit) {
   ChunkInbox inbox(options(10), [] {});
-  EXPECT_TRUE(inbox.put("12345"));
-  EXPECT_FALSE(inbox.put("123456"));
+  EXPECT_TRUE(inbox.put(chunk("12345")));
+  EXPECT_FALSE(inbox.put(chunk("123456")));
   EXPECT_EQ(read_all(inbox), "limit_exceeded");
 }
 
 TEST(ChunkInbox, GivesUpSendersThatAreTooSlow) {
   ChunkInbox inbox(options(), [] {});
-  inbox.put("1");
+  inbox.put(chunk("1"));
   EXPECT_EQ(read_all(inbox), "deadline_exceeded");
 }
 
@@ -86,7 +90,7 @@ TEST(ChunkInbox, HoldsTheFileAgainstWhatWasStated) {
   const auto outcome = [](const std::string& sha256, std::optional<std::uint64_t> bytes) -> std::string {
     ChunkInbox inbox(options(), [] {});
     inbox.expect(sha256, bytes);
-    inbox.put("abc");
+    inbox.put(chunk("abc"));
     inbox.end();
     std::array<std::byte, 2> some{};
     if (const auto count = inbox.read(some); !count) return name_of(count.error().code);

@@ -66,7 +66,15 @@ void Acceptor::run() {
 }
 
 void Acceptor::look() {
-  const FloodGuard::Verdict verdict = look_();
+  std::vector<FloodGuard::Open> connections;
+  for (const Open& one : open_) {
+    if (inode_of(one.number) == one.inode) connections.push_back({one.name, bytes_read(one.number)});
+  }
+  FloodGuard::Verdict verdict;
+  try {
+    verdict = look_(connections);
+  } catch (...) {  // no memory: the next look may have some
+  }
   is_full_ = verdict.is_full;
   for (const Open& one : open_) {
     const bool is_harmful =

@@ -29,7 +29,7 @@ class Acceptor {
   using Hand = std::function<void(Descriptor socket)>;
 
   /// What becomes of connections that are there, and whether others may come; asked often while there are any.
-  using Look = std::function<FloodGuard::Verdict()>;
+  using Look = std::function<FloodGuard::Verdict(const std::vector<FloodGuard::Open>&)>;
 
   /// tick   called a few times a second.
   Acceptor(Listener listener, Limits limits, Hand hand, Look look, std::function<void()> tick);

@@ -79,7 +79,11 @@ void set_limits(grpc::ServerBuilder& builder, const DoorOptions& options) {
 /// Clients that wait for their answers hold what may be open and a few more, whose memory is just given back.
 FloodGuard flood_guard(const DoorOptions& options) {
   const auto open = static_cast<std::uint64_t>(options.streams_per_connection);
-  return FloodGuard({.of_one = 16 * open, .of_one_then = 2 * open, .of_all = 128 * open});
+  return FloodGuard(
+      {.calls = {.of_one = 16 * open, .of_one_then = 2 * open, .of_all = 128 * open},
+       .bytes = {.of_one = 2 * kLargestMessage, .of_one_then = 2 * kLargestMessage, .of_all = kMemory / 2},
+       .message_bytes = kLargestMessage,
+       .head_bytes = 2 * kLargestMetadata});
 }
 
 }  // namespace
@@ -124,7 +128,8 @@ class Door::Running {
     set_serving(true);
     acceptor_ = std::make_unique<Acceptor>(
         *std::move(listener), Acceptor::Limits{options.connections, options.connections_per_peer},
-        [this](Descriptor socket) { take(std::move(socket)); }, [guard = flood_guard(options)] { return guard.look(); },
+        [this](Descriptor socket) { take(std::move(socket)); },
+        [guard = flood_guard(options)](const auto& open) mutable { return guard.look(open); },
         [this] { room_.open.end_late_ones(); });
     probe_ = std::make_unique<SelfProbe>(probe_target(options.listen, acceptor_->port()), secured->own_client,
                                          options.probe_interval, [this] { return acceptor_->may_be_full(); });

@@ -55,7 +55,7 @@ class AcceptorTest : public testing::Test {
               const std::lock_guard lock(mutex_);
               held_.push_back(std::move(socket));
             },
-            [this] {
+            [this](const std::vector<FloodGuard::Open>&) {
               const std::lock_guard lock(mutex_);
               return verdict_;
             },

@@ -1,15 +1,18 @@
-#include "server/grpc/held_calls.h"
+#include "server/grpc/connection_counts.h"
 
+#include <algorithm>
 #include <charconv>
-#include <cstdlib>
 #include <memory>
 #include <string_view>
+#include <utility>
 
 #include <grpc/grpc.h>
 #include <grpc/support/alloc.h>
+#include <linux/tcp.h>  // knows more of tcp_info than the C library's
 #include <netdb.h>
 #include <netinet/in.h>
 #include <nlohmann/json.hpp>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 
 namespace geosis::server::rpc {
@@ -25,14 +28,23 @@ Json document(char* text) {
   return text ? Json::parse(text, nullptr, false) : Json();
 }
 
-/// Protobuf's JSON: whole numbers are strings, and zeros are left out.
-std::uint64_t number_in(const Json& object, const char* name) {
-  const auto found = object.find(name);
-  if (found == object.end() || !found->is_string()) return 0;
-  const std::string& text = found->get_ref<const std::string&>();
+/// A member, or null: what a text is about may be gone by the time it is written.
+const Json& in(const Json& object, const char* name) {
+  static const Json nothing;
+  const auto found = object.is_object() ? object.find(name) : object.end();
+  return found == object.end() ? nothing : *found;
+}
+
+std::uint64_t number_of(const std::string& text) {
   std::uint64_t number = 0;
   std::from_chars(text.data(), text.data() + text.size(), number);
   return number;
+}
+
+/// Protobuf's JSON: whole numbers are strings, and zeros are left out.
+std::uint64_t number_in(const Json& object, const char* name) {
+  const Json& text = in(object, name);
+  return text.is_string() ? number_of(text.get_ref<const std::string&>()) : 0;
 }
 
 /// Counters are read one after the other while they move.
@@ -48,26 +60,32 @@ template <class Visit>
 void visit_servers(Visit visit) {
   for (std::int64_t first = 0;;) {
     const Json page = document(grpc_channelz_get_servers(first));
-    const Json servers = page.value("server", Json::array());
+    const Json& servers = in(page, "server");
     for (const Json& server : servers) {
-      first = id_in(server.value("ref", Json::object()), "serverId") + 1;
+      first = id_in(in(server, "ref"), "serverId") + 1;
       visit(server, first - 1);
     }
-    if (servers.empty() || page.value("end", false)) return;
+    if (servers.empty() || in(page, "end") == true) return;
   }
 }
 
-std::uint64_t held_by_socket(std::int64_t id) {
-  const Json socket = document(grpc_channelz_get_socket(id));
-  const Json data = socket.value("socket", Json::object()).value("data", Json::object());
-  return difference(number_in(data, "streamsStarted"),
-                    number_in(data, "streamsSucceeded") + number_in(data, "streamsFailed"));
+ConnectionCounts counts_of(std::string connection, std::int64_t socket) {
+  const Json whole = document(grpc_channelz_get_socket(socket));
+  const Json& data = in(in(whole, "socket"), "data");
+  const std::uint64_t begun = number_in(data, "streamsStarted");
+  const std::uint64_t over = number_in(data, "streamsSucceeded") + number_in(data, "streamsFailed");
+  return {.connection = std::move(connection),
+          .held = difference(begun, over),
+          .begun = begun,
+          .messages = number_in(data, "messagesReceived") + number_in(data, "messagesSent")};
 }
 
 /// "chttp2 ipv4:127.0.0.1:43682"
 std::string connection_in(const Json& reference) {
-  const std::string name = reference.value("name", "");
-  return name.substr(name.rfind(' ') + 1);
+  const Json& name = in(reference, "name");
+  if (!name.is_string()) return {};
+  const std::string& text = name.get_ref<const std::string&>();
+  return text.substr(text.rfind(' ') + 1);
 }
 
 std::string escaped(std::string_view host) {
@@ -81,25 +99,25 @@ std::string escaped(std::string_view host) {
 std::uint64_t held_calls() {
   std::uint64_t count = 0;
   visit_servers([&](const Json& server, std::int64_t) {
-    const Json data = server.value("data", Json::object());
+    const Json& data = in(server, "data");
     count +=
         difference(number_in(data, "callsStarted"), number_in(data, "callsSucceeded") + number_in(data, "callsFailed"));
   });
   return count;
 }
 
-std::vector<HeldCalls> held_calls_by_connection() {
-  std::vector<HeldCalls> all;
+std::vector<ConnectionCounts> counts_by_connection() {
+  std::vector<ConnectionCounts> all;
   visit_servers([&](const Json&, std::int64_t server) {
     for (std::int64_t first = 0;;) {
       const Json page = document(grpc_channelz_get_server_sockets(server, first, kSocketsAtOnce));
-      const Json sockets = page.value("socketRef", Json::array());
+      const Json& sockets = in(page, "socketRef");
       for (const Json& socket : sockets) {
         const std::int64_t id = id_in(socket, "socketId");
-        all.push_back({connection_in(socket), held_by_socket(id)});
+        all.push_back(counts_of(connection_in(socket), id));
         first = id + 1;
       }
-      if (sockets.empty() || page.value("end", false)) return;
+      if (sockets.empty() || in(page, "end") == true) return;
     }
   });
   return all;
@@ -121,6 +139,15 @@ std::string connection_name(int socket) {
     return std::string("ipv4:").append(name.substr(kMapped.size())).append(":").append(port);
   }
   return "ipv6:%5B" + escaped(name) + "%5D:" + port;
+}
+
+std::uint64_t bytes_read(int socket) {
+  tcp_info info{};
+  socklen_t length = sizeof info;
+  int unread = 0;
+  if (::getsockopt(socket, IPPROTO_TCP, TCP_INFO, &info, &length) != 0 || ::ioctl(socket, FIONREAD, &unread) != 0)
+    return 0;
+  return difference(info.tcpi_bytes_received, static_cast<std::uint64_t>(std::max(unread, 0)));
 }
 
 }  // namespace geosis::server::rpc

@@ -1,4 +1,4 @@
-#include "server/grpc/held_calls.h"
+#include "server/grpc/connection_counts.h"
 
 #include <algorithm>
 #include <array>
@@ -106,9 +106,32 @@ bool send_all(const Descriptor& socket, std::string_view text) {
   return true;
 }
 
-class HeldCallsTest : public test::DoorTest {};
+TEST(BytesRead, LeavesOutWhatIsStillToBeRead) {
+  auto listener = Listener::open("127.0.0.1:0");
+  const Descriptor client = connect_to(listener->port());
+  const auto accepted = accept_one(*listener);
+  ASSERT_TRUE(send_all(client, "12345"));
+  char bytes[3];
+  EXPECT_TRUE(test::comes_true([&] { return ::recv(accepted.socket.number(), bytes, sizeof bytes, MSG_PEEK) == 3; }));
+  EXPECT_EQ(bytes_read(accepted.socket.number()), 0u);
+  EXPECT_EQ(::recv(accepted.socket.number(), bytes, sizeof bytes, 0), 3);
+  EXPECT_EQ(bytes_read(accepted.socket.number()), 3u);
+  EXPECT_EQ(bytes_read(-1), 0u);
+}
 
-TEST_F(HeldCallsTest, CountsTheCallsOfEachConnectionUntilTheyAreOver) {
+class ConnectionCountsTest : public test::DoorTest {
+ protected:
+  /// Over the connection of before.
+  void expect_served(const std::string& volume) const {
+    grpc::ClientContext context;
+    v1::GetVolumeRequest request;
+    request.set_id(volume);
+    v1::Volume shown;
+    EXPECT_TRUE(volumes->GetVolume(&context, request, &shown).ok());
+  }
+};
+
+TEST_F(ConnectionCountsTest, CountsTheCallsOfEachConnectionUntilTheyAreOver) {
   test::Gate gate_of_work;
   start({}, test::gated_after(4, gate_of_work));
   v1::StreamLodsRequest request;
@@ -118,8 +141,9 @@ TEST_F(HeldCallsTest, CountsTheCallsOfEachConnectionUntilTheyAreOver) {
   v1::LodChunk chunk;
   ASSERT_TRUE(stream->Read(&chunk));
   EXPECT_TRUE(test::comes_true([] { return held_calls() == 1; }));
-  const auto of_each = held_calls_by_connection();
-  EXPECT_EQ(std::count_if(of_each.begin(), of_each.end(), [](const HeldCalls& one) { return one.count == 1; }), 1);
+  const auto of_each = counts_by_connection();
+  EXPECT_EQ(std::count_if(of_each.begin(), of_each.end(), [](const ConnectionCounts& one) { return one.held == 1; }),
+            1);
   gate_of_work.open();
   while (stream->Read(&chunk)) {
   }
@@ -127,7 +151,7 @@ TEST_F(HeldCallsTest, CountsTheCallsOfEachConnectionUntilTheyAreOver) {
   EXPECT_TRUE(test::comes_true([] { return held_calls() == 0; }));
 }
 
-TEST_F(HeldCallsTest, AClientWhoTakesBackWhatItBeginsIsHungUpOn) {
+TEST_F(ConnectionCountsTest, AClientWhoTakesBackWhatItBeginsIsHungUpOn) {
   start({.streams_per_connection = 1});  // sixteen may be on their way out
   const std::string other = upload_ball();
   const Descriptor flood = connect_to(door->port());
@@ -136,11 +160,27 @@ TEST_F(HeldCallsTest, AClientWhoTakesBackWhatItBeginsIsHungUpOn) {
   constexpr std::uint32_t kAtOnce = 5000, kEnough = 4'000'000;
   while (stream < kEnough && send_all(flood, taken_back(stream, kAtOnce))) stream += 2 * kAtOnce;
   EXPECT_LT(stream, kEnough);
-  grpc::ClientContext context;
-  v1::GetVolumeRequest request;
-  request.set_id(other);
-  v1::Volume volume;
-  EXPECT_TRUE(volumes->GetVolume(&context, request, &volume).ok());  // over the connection of before
+  expect_served(other);
+}
+
+/// The head of a call that is never complete.
+std::string endless_head() {
+  std::string piece;
+  while (piece.size() < 12'000) piece.append({0, 1}).append("x").append({100}).append(100, 'y');
+  return frame(9, 0, 1, piece);
+}
+
+TEST_F(ConnectionCountsTest, AClientWhoseHeadNeverEndsIsHungUpOn) {
+  start();
+  const std::string other = upload_ball();
+  const Descriptor flood = connect_to(door->port());
+  ASSERT_TRUE(send_all(flood, greeting() + frame(1, 0, 1, "")));
+  const std::string piece = endless_head();
+  std::size_t sent = 0;
+  constexpr std::size_t kEnough = std::size_t{1} << 30;
+  while (sent < kEnough && send_all(flood, piece)) sent += piece.size();
+  EXPECT_LT(sent, kEnough);
+  expect_served(other);
 }
 
 }  // namespace

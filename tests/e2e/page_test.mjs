@@ -2,7 +2,7 @@
 // second survey; GEOSIS_SCREENSHOTS = folder for pictures.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdirSync, mkdtempSync, rmSync } from 'node:fs';
+import { mkdirSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, beforeEach, describe, it } from 'node:test';
@@ -116,6 +116,25 @@ describe('the page', () => {
     assert.ok(await page.isVisible('#legend'));
     await screenshot('reliability');
     assert.deepEqual(page.mistakes, []);
+  });
+
+  it('joins samples along reflectors, says so, and shows how well traces agree', async () => {
+    assert.ok(await page.isHidden('#grid-note'));
+    await reconstructBy(page, () => page.selectOption('#grid', 'structural'));
+    assert.match(page.url(), /grid=structural/);
+    assert.match(await page.textContent('#grid-note'), /^Joined along the reflectors\./);
+    assert.ok((await shareChangedBy(page, () => colourBy(page, 'agreement'))) > 0, 'agreement is not shown');
+    assert.match(await page.textContent('#legend'), /traces agree/);
+    await screenshot('agreement');
+    await reconstructBy(page, () => page.selectOption('#grid', 'auto'));
+    assert.match(await page.textContent('#grid-note'), /95 % of the dips are within/);
+    assert.deepEqual(page.mistakes, []);
+  });
+
+  it('saves the finest level as a file', async () => {
+    const [download] = await Promise.all([page.waitForEvent('download', { timeout: PATIENCE_MS }), page.click('#save button[value="glb"]')]);
+    assert.equal(download.suggestedFilename(), 'sample.glb');
+    assert.equal(readFileSync(await download.path()).subarray(0, 4).toString(), 'glTF');
   });
 
   it('does not ask for a range that makes no sense', async () => {

@@ -10,6 +10,9 @@ import { BodiesSection } from './bodies_section.js';
 const LEAST_BOX = 0.02;
 const NEEDS_NO_BOX = 20;
 
+/** What the plain colour and the pale one mean. */
+const LEGENDS = { reliability: ['measured', 'filled in'], agreement: ['traces agree', 'layers may be mis-tied'] };
+
 /**
  * How the surface looks: its colours, and the body that is singled out in the view and in the table.
  *
@@ -111,9 +114,15 @@ export class Appearance {
       input.parentElement.hidden = !available.includes(input.value);
     }
     this.#elements.colouring.hidden = available.length < 2;
-    this.#elements.legend.hidden = colouring !== 'reliability';
+    this.#showLegend(colouring);
     this.#showSection();
     this.#stage.draw();
+  }
+
+  #showLegend(colouring) {
+    const texts = LEGENDS[colouring];
+    this.#elements.legend.hidden = !texts;
+    this.#elements.legend.querySelectorAll('span').forEach((span, at) => { span.textContent = texts?.[at] ?? ''; });
   }
 
   #showSection() {

@@ -1,5 +1,5 @@
 import { GeosisApi } from '../core/api.js';
-import { describe, idle } from '../core/extraction_state.js';
+import { describe, describeGrid, idle } from '../core/extraction_state.js';
 import { formatCount, formatShare } from '../core/format.js';
 import { Histogram } from '../core/histogram.js';
 import { debounced, Latest } from '../core/latest.js';
@@ -15,6 +15,8 @@ import { Appearance } from './appearance.js';
 import { HistogramView } from './histogram_view.js';
 import { showLevels } from './levels_table.js';
 import { Reconstruction } from './reconstruction.js';
+import { listenToSave } from './save.js';
+import { SignIn } from './sign_in.js';
 import { uploadFile } from './upload.js';
 
 const HISTOGRAM_BINS = 256;
@@ -51,6 +53,18 @@ const appearance = new Appearance(stage, appearanceElements, {
   onColouring: (name) => remember({ colour: name === 'plain' ? null : name }),
 });
 
+const signIn = new SignIn(element('sign-in'), {
+  onKey: (key) => {
+    api.key = key;
+    withProblems(begin());
+  },
+});
+api.key = signIn.key;
+
+listenToSave(element('save'), async (format) => ({
+  blob: await api.level(finished, 0, format), name: `${nameOf(volume)}.${format}`,
+}));
+
 const decoder = new PartDecoder(new Worker('decode_worker.js'));
 const reconstruction = new Reconstruction(api, decoder, {
   onState: showState,
@@ -59,6 +73,8 @@ const reconstruction = new Reconstruction(api, decoder, {
 const reconstructSoon = debounced(() => reconstruct({ onlyIfNew: true }), DEBOUNCE_MS);
 /** What was asked for last, as text. */
 let asked = '';
+/** The extraction whose levels can be saved, or null. */
+let finished = null;
 
 function reconstruct({ onlyIfNew = false } = {}) {
   if (!volume || mistakeInRequest()) return;
@@ -85,6 +101,11 @@ function showState(state) {
   element('status').classList.toggle('problem', state.phase === 'failed');
   element('progress').value = state.progress;
   showLevels(element('levels').tBodies[0], state);
+  const note = describeGrid(state);
+  element('grid-note').textContent = note;
+  element('grid-note').hidden = note === '';
+  finished = state.phase === 'done' && !state.manifest.empty ? state.manifest.id : null;
+  element('save').hidden = finished === null;
   appearance.show(state);
 }
 
@@ -105,6 +126,7 @@ function noteRange() {
 function showChoices(changed) {
   choices = changed;
   element('fill').value = choices.fill;
+  element('grid').value = choices.grid;
   element('specks').value = choices.minVoxels || '';
 }
 
@@ -147,6 +169,11 @@ async function openSurvey(id, wantedRange) {
   });
 }
 
+/** A name for files, without what was the end of the survey's own. */
+function nameOf({ id, name }) {
+  return (name || id.slice(0, 12)).replace(/\.\w{1,5}$/, '');
+}
+
 function placeVolume(document_) {
   volume = document_;
   display = displayTransform(volume.geometry.transform, volume.dims);
@@ -187,14 +214,14 @@ async function upload(file) {
   showSurveyProblem('');
   bar.hidden = false;
   try {
-    const stored = await uploadFile(api.uploadUrl(file.name), file, (fraction) => {
+    const stored = await uploadFile(api.uploadUrl(file.name), api.headers, file, (fraction) => {
       bar.value = fraction;
       text.textContent = fraction < 1 ? `Sending ${file.name} …` : `Reading ${file.name} …`;
     });
     await listSurveys(stored.id);
     await openSurvey(stored.id);
   } catch (error) {
-    showSurveyProblem(error.message);
+    showFailure(error);
   } finally {
     bar.hidden = true;
     text.replaceChildren(...before);
@@ -216,10 +243,12 @@ function listenToForm() {
       if (!rangeMistake(range)) histogramView.range = range;
     });
   }
-  element('fill').addEventListener('change', ({ target }) => {
-    choices = { ...choices, fill: target.value };
-    reconstructSoon();
-  });
+  for (const choice of ['fill', 'grid']) {
+    element(choice).addEventListener('change', ({ target }) => {
+      choices = { ...choices, [choice]: target.value };
+      reconstructSoon();
+    });
+  }
   element('specks').addEventListener('input', ({ target }) => {
     choices = { ...choices, minVoxels: parseMinVoxels(target.value) };
     noteRange();
@@ -271,8 +300,15 @@ async function withProblems(work) {
   try {
     await work;
   } catch (error) {
-    showSurveyProblem(error.message);
+    showFailure(error);
   }
+}
+
+/** Says what went wrong; where a key is missing, or is not the right one, it asks for one. */
+function showFailure(error) {
+  const needsKey = error.code === 'unauthenticated';
+  showSurveyProblem(needsKey && !api.key ? '' : error.message);
+  if (needsKey) signIn.show();
 }
 
 async function begin() {

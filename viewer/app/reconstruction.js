@@ -79,13 +79,15 @@ export class Reconstruction {
   }
 
   /** Numbers and progress come beside the meshes. When this channel fails, the stream still carries everything. */
-  #listen(id, signal) {
-    const events = new EventSource(this.#api.eventsUrl(id));
-    const on = (name, action) => events.addEventListener(name, ({ data }) => signal.aborted || action(JSON.parse(data)));
-    on('progress', (progress) => this.#set(progressed(this.#state, progress)));
-    on('level', (entry) => this.#set(levelKnown(this.#state, entry)));
-    for (const last of ['done', 'failed']) on(last, () => events.close());
-    events.onerror = () => events.close();
-    signal.addEventListener('abort', () => events.close());
+  async #listen(id, signal) {
+    const changes = { progress: progressed, level: levelKnown };
+    try {
+      for await (const { event, data } of this.#api.events(id, signal)) {
+        if (signal.aborted) return;
+        if (changes[event]) this.#set(changes[event](this.#state, data));
+      }
+    } catch {
+      // The stream tells in the end what matters.
+    }
   }
 }

@@ -1,3 +1,4 @@
+import { EventReader } from './event_stream.js';
 import { MultipartReader, multipartBoundary } from './multipart.js';
 import { Problem, problemFromText } from './problem.js';
 
@@ -5,6 +6,8 @@ import { Problem, problemFromText } from './problem.js';
 export class GeosisApi {
   #base;
   #fetch;
+  /** What is sent with every call, for servers that ask for a key; '' = none. */
+  key = '';
 
   /** base   where the service is, without a slash at the end: '' for the page's own server. */
   constructor(base = '', fetchFunction = globalThis.fetch.bind(globalThis)) {
@@ -52,14 +55,26 @@ export class GeosisApi {
   /** Tells that nobody waits for it here any more. Never fails: it is a courtesy. */
   async withdraw(extraction) {
     try {
-      await this.#fetch(this.#url(`/v1/extractions/${encodeURIComponent(extraction)}`), { method: 'DELETE', keepalive: true });
+      const path = `/v1/extractions/${encodeURIComponent(extraction)}`;
+      await this.#fetch(this.#url(path), this.#withKey({ method: 'DELETE', keepalive: true }));
     } catch {
       // The server is gone, and the interest with it.
     }
   }
 
-  eventsUrl(extraction) {
-    return this.#url(`/v1/extractions/${encodeURIComponent(extraction)}/events`);
+  /** What becomes known of an extraction, {event, data}, until it is done or has failed. */
+  async *events(extraction, signal) {
+    const answer = await this.#answer(`/v1/extractions/${encodeURIComponent(extraction)}/events`, { signal });
+    const reader = new EventReader();
+    for await (const chunk of chunksOf(answer)) {
+      for (const { event, data } of reader.push(chunk)) yield { event, data: JSON.parse(data) };
+    }
+  }
+
+  /** A whole level as a file: drc, glb, ply, obj or stl. */
+  async level(extraction, level, format, signal) {
+    const answer = await this.#answer(`/v1/extractions/${encodeURIComponent(extraction)}/lods/${level}.${format}`, { signal });
+    return answer.blob();
   }
 
   uploadUrl(name) {
@@ -75,17 +90,23 @@ export class GeosisApi {
     const boundary = multipartBoundary(answer.headers.get('Content-Type'));
     if (!boundary) throw new Problem({ detail: 'The stream of levels is not multipart.' });
     const reader = new MultipartReader(boundary);
-    const body = answer.body.getReader();
-    for (;;) {
-      const { value, done } = await body.read().catch(cutShort);
-      if (done) break;
-      for (const part of reader.push(value)) yield streamItem(part);
+    for await (const chunk of chunksOf(answer)) {
+      for (const part of reader.push(chunk)) yield streamItem(part);
     }
     if (!reader.finished) cutShort();
   }
 
   #url(path) {
     return this.#base + path;
+  }
+
+  #withKey(options) {
+    return this.key ? { ...options, headers: { ...options?.headers, ...this.headers } } : options;
+  }
+
+  /** The headers that calls made elsewhere have to send. */
+  get headers() {
+    return this.key ? { Authorization: `Bearer ${this.key}` } : {};
   }
 
   async #json(path, options) {
@@ -96,13 +117,23 @@ export class GeosisApi {
   async #answer(path, options) {
     let answer;
     try {
-      answer = await this.#fetch(this.#url(path), options);
+      answer = await this.#fetch(this.#url(path), this.#withKey(options));
     } catch (error) {
       if (error.name === 'AbortError') throw error;
       throw new Problem({ detail: 'The server cannot be reached.', code: 'unavailable' });
     }
     if (!answer.ok) throw problemFromText(answer.status, await answer.text());
     return answer;
+  }
+}
+
+/** The body of an answer as it comes. */
+async function* chunksOf(answer) {
+  const body = answer.body.getReader();
+  for (;;) {
+    const { value, done } = await body.read().catch(cutShort);
+    if (done) return;
+    yield value;
   }
 }
 

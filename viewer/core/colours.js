@@ -4,11 +4,15 @@
  * plain        one colour for all
  * bodies       one for each body
  * reliability  the plain one where samples were measured, pale where they were filled in
+ * agreement    the plain one where traces agree along the reflectors, pale where layers are likely to be mis-tied
  */
-export const COLOURINGS = Object.freeze(['plain', 'bodies', 'reliability']);
+export const COLOURINGS = Object.freeze(['plain', 'bodies', 'reliability', 'agreement']);
 
 /** Reliability of what was measured; everything below was filled in, wholly or in part. */
 const MEASURED = 255;
+
+/** Agreement of traces that are alike along the layers. */
+const WHOLLY = 255;
 
 /** How strongly the most reliable filling shows: a good guess is a guess, too, and is to be seen. */
 const LEAST_FILLED = 0.6;
@@ -18,6 +22,14 @@ export function filledShare(reliability) {
   if (reliability === MEASURED) return 0;
   return LEAST_FILLED + (1 - LEAST_FILLED) * (1 - reliability / (MEASURED - 1));
 }
+
+/** How strongly a low agreement shows, 0 = traces agree wholly ... 1 = not at all. */
+export function doubtfulShare(agreement) {
+  return 1 - agreement / WHOLLY;
+}
+
+/** The colourings that shade from the plain colour to the pale one, by the share that a vertex' value makes. */
+const SHADINGS = Object.freeze({ reliability: filledShare, agreement: doubtfulShare });
 
 /**
  * The largest bodies' colours. Chosen so that any two stay apart (OKLab, lightness counted for less because shading
@@ -50,8 +62,8 @@ export function swatchColour(colouring, body, plain) {
 
 /** The colourings that these parts have the attributes for. */
 export function colouringsOf(parts) {
-  const has = { plain: true, bodies: parts.some(({ body }) => body), reliability: parts.some(({ reliability }) => reliability) };
-  return COLOURINGS.filter((name) => has[name]);
+  const attributes = { plain: 'positions', bodies: 'body', reliability: 'reliability', agreement: 'agreement' };
+  return COLOURINGS.filter((name) => name === 'plain' || parts.some((part) => part[attributes[name]]));
 }
 
 /** The colouring to use when this one is wanted. */
@@ -62,23 +74,30 @@ export function colouringFor(wanted, available) {
 /**
  * Linear RGB of each vertex, (n, 3) float32; null in the plain colouring, where the material's own colour is enough.
  *
- * part        {positions, body: (n) uint32 | null, reliability: (n) uint8 | null}; without reliability all was measured
- * plain, pale '#rrggbb' of what was measured and of what was filled in
+ * part        {positions, body: (n) uint32 | null, reliability, agreement: (n) uint8 | null}; without reliability all
+ *             was measured, without agreement samples are joined along the axes
+ * plain, pale '#rrggbb' of what is to be trusted and of what is not
  */
-export function vertexColours({ positions, body, reliability }, { colouring, plain, pale }) {
+export function vertexColours(part, { colouring, plain, pale }) {
   if (colouring === 'plain') return null;
-  const colours = new Float32Array(positions.length);
-  if (colouring === 'bodies' && body) paintBodies(colours, body);
-  else if (colouring === 'reliability' && reliability) paintReliability(colours, reliability, linearOf(plain), linearOf(pale));
+  const colours = new Float32Array(part.positions.length);
+  const shares = paleShares(part, colouring);
+  if (colouring === 'bodies' && part.body) paintBodies(colours, part.body);
+  else if (shares) paintShaded(colours, part[colouring], shares, linearOf(plain), linearOf(pale));
   else paintAll(colours, linearOf(plain));
   return colours;
 }
 
-/** How strongly each vertex shows as filled in, 0 = measured ... 255; null where there is nothing to tell. */
-export function filledOf({ reliability }, colouring) {
-  if (colouring !== 'reliability' || !reliability) return null;
-  const shares = tabulated((value) => Math.round(255 * filledShare(value)));
-  return reliability.map((value) => shares[value]);
+/** How strongly each vertex shows as pale, 0 ... 255; null where there is nothing to tell. */
+export function palenessOf(part, colouring) {
+  const shares = paleShares(part, colouring)?.map((share) => Math.round(255 * share));
+  return shares ? part[colouring].map((value) => shares[value]) : null;
+}
+
+/** For each value of the shading's attribute its share; null where the colouring is no shading or the part has no such attribute. */
+function paleShares(part, colouring) {
+  const share = SHADINGS[colouring];
+  return share && part[colouring] ? Array.from({ length: 256 }, (_, value) => share(value)) : null;
 }
 
 function paintBodies(colours, body) {
@@ -90,19 +109,14 @@ function paintBodies(colours, body) {
   }
 }
 
-function paintReliability(colours, reliability, plain, pale) {
-  const shades = tabulated((value) => plain.map((channel, at) => channel + filledShare(value) * (pale[at] - channel)));
-  for (let vertex = 0, at = 0; vertex < reliability.length; ++vertex, at += 3) {
-    const [red, green, blue] = shades[reliability[vertex]];
+function paintShaded(colours, values, shares, plain, pale) {
+  const shades = shares.map((share) => plain.map((channel, at) => channel + share * (pale[at] - channel)));
+  for (let vertex = 0, at = 0; vertex < values.length; ++vertex, at += 3) {
+    const [red, green, blue] = shades[values[vertex]];
     colours[at] = red;
     colours[at + 1] = green;
     colours[at + 2] = blue;
   }
-}
-
-/** A function of reliabilities as a table. */
-function tabulated(ofReliability) {
-  return Array.from({ length: MEASURED + 1 }, (_, value) => ofReliability(value));
 }
 
 function paintAll(colours, colour) {

@@ -1,4 +1,4 @@
-import { formatCount } from './format.js';
+import { formatCount, formatShare } from './format.js';
 
 /**
  * What is known of the extraction on the screen. A value: every change makes a new one.
@@ -70,6 +70,7 @@ const STAGES = {
   queued: 'Waiting for a free worker',
   load: 'Reading the survey',
   fill: 'Filling missing samples',
+  grid: 'Following the reflectors',
   extract: 'Extracting the surface',
   simplify: 'Making levels of detail',
   encode: 'Encoding',
@@ -89,6 +90,17 @@ export function describeBodies({ phase, manifest, bodies, bodiesProblem }) {
   if (manifest.empty) return 'None.';
   if (!bodies) return 'Counting …';
   return bodies.length === 1 ? 'One body.' : `${formatCount(bodies.length)} bodies. Click one, here or in the view, to single it out.`;
+}
+
+/** Which grid it lies on, why, and how far that is to be trusted; nothing to say on the survey's own. */
+export function describeGrid({ manifest }) {
+  const grid = manifest?.grid;
+  if (!grid) return '';
+  const what = grid.chosen === 'structural' ? 'Joined along the reflectors' : 'Joined along the axes';
+  const why = grid.asked === 'auto' ? `: ${grid.because}` : '';
+  const doubt = grid.chosen === 'structural' && grid.unreliable_share > 0
+    ? ` ${formatShare(grid.unreliable_share)} of the samples lie where traces hardly agree.` : '';
+  return `${what}${why}.${doubt}`;
 }
 
 function describeSurface({ components, genus, manifold }) {

@@ -3,9 +3,11 @@
  *
  * fill       none | linear | rbf: what happens to missing traces inside the survey
  * minVoxels  bodies smaller than this are left out; 0 keeps all
+ * grid       given | structural | auto: what joins the samples of neighbouring traces, depth or reflectors
  */
 export const FILLS = Object.freeze(['none', 'linear', 'rbf']);
-export const noChoices = Object.freeze({ fill: 'none', minVoxels: 0 });
+export const GRIDS = Object.freeze(['given', 'structural', 'auto']);
+export const noChoices = Object.freeze({ fill: 'none', minVoxels: 0, grid: 'given' });
 
 const ATTRIBUTES = Object.freeze(['reliability', 'body']);
 
@@ -24,9 +26,10 @@ const LEVELS = Object.freeze([
 ]);
 
 /** The request's JSON. */
-export function requestOf({ low, high }, { fill, minVoxels } = noChoices) {
+export function requestOf({ low, high }, { fill, minVoxels, grid } = noChoices) {
   const request = { range: [low, high], missing: { method: fill }, attributes: ATTRIBUTES, levels: LEVELS };
-  return minVoxels > 0 ? { ...request, bodies: { min_voxels: minVoxels } } : request;
+  if (minVoxels > 0) request.bodies = { min_voxels: minVoxels };
+  return grid === 'given' ? request : { ...request, grid, attributes: [...ATTRIBUTES, 'agreement'] };
 }
 
 /** Whether there is anything to fill in a volume. */
@@ -43,11 +46,18 @@ export function parseMinVoxels(text) {
 
 /** The choices that an address remembers; what it does not say, or says wrongly, is the default. */
 export function choicesFromAddress(parameters) {
-  const fill = parameters.get('missing');
-  return { fill: FILLS.includes(fill) ? fill : 'none', minVoxels: parseMinVoxels(parameters.get('min_voxels')) ?? 0 };
+  const known = (values, value) => (values.includes(value) ? value : values[0]);
+  return {
+    fill: known(FILLS, parameters.get('missing')),
+    minVoxels: parseMinVoxels(parameters.get('min_voxels')) ?? 0,
+    grid: known(GRIDS, parameters.get('grid')),
+  };
 }
 
 /** What the address is to remember: name -> text, null for a default. */
-export function choicesToAddress({ fill, minVoxels }) {
-  return { missing: fill === 'none' ? null : fill, min_voxels: minVoxels > 0 ? String(minVoxels) : null };
+export function choicesToAddress({ fill, minVoxels, grid }) {
+  const unlessFirst = (values, value) => (value === values[0] ? null : value);
+  return {
+    missing: unlessFirst(FILLS, fill), min_voxels: minVoxels > 0 ? String(minVoxels) : null, grid: unlessFirst(GRIDS, grid),
+  };
 }

@@ -2,7 +2,8 @@
  * One Draco part to flat arrays. `draco` is a ready decoder module.
  *
  * returns  {positions: Float32Array (n, 3), triangles: Uint32Array (m, 3), body: Uint32Array (n) | null: its number, 0 =
- *          the largest, reliability: Uint8Array (n) | null: 255 = measured; null where the part has none}
+ *          the largest, reliability: Uint8Array (n) | null: 255 = measured, agreement: Uint8Array (n) | null: 255 = wholly; null where the
+ *          part has none}
  * throws   Error when the bytes are not a Draco triangle mesh.
  */
 export function decodePart(draco, bytes) {
@@ -19,6 +20,7 @@ export function decodePart(draco, bytes) {
       triangles: readTriangles(draco, decoder, mesh),
       body: readNamed(draco, decoder, mesh, 'body', Uint32Array, draco.DT_UINT32),
       reliability: readNamed(draco, decoder, mesh, 'reliability', Uint8Array, draco.DT_UINT8),
+      agreement: readNamed(draco, decoder, mesh, 'agreement', Uint8Array, draco.DT_UINT8),
     };
   } finally {
     for (const owned of [mesh, buffer, decoder]) draco.destroy(owned);

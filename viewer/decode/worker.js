@@ -1,6 +1,6 @@
 // Decodes parts off the page's thread, in the order in which they come.
 // in   {ticket, bytes: Uint8Array, display: 12 numbers}
-// out  {ticket, positions, triangles, normals, body, reliability} in display coordinates, or {ticket, error}
+// out  {ticket, positions, triangles, normals, body, reliability, agreement} in display coordinates, or {ticket, error}
 import createDraco from 'draco3d/draco_decoder_nodejs.js';
 
 import { reversedTriangles, transformPositions, vertexNormals } from '../core/mesh.js';

@@ -3,7 +3,7 @@ import { describe, it } from 'node:test';
 
 import { bodiesTable, describeBody, describeSmaller, toggled } from '../core/bodies.js';
 import {
-  bodyColour, colouringFor, colouringsOf, filledOf, filledShare, linearOf, swatchColour, vertexColours,
+  bodyColour, colouringFor, colouringsOf, doubtfulShare, filledShare, linearOf, palenessOf, swatchColour, vertexColours,
 } from '../core/colours.js';
 import {
   bodiesCame, bodiesFailed, describe as sentenceOf, describeBodies, idle, manifestCame, progressed, started,
@@ -31,19 +31,25 @@ describe('request', () => {
   });
 
   it('has the way of filling and the smallest body', () => {
-    const { missing, bodies } = requestOf({ low: null, high: 1 }, { fill: 'rbf', minVoxels: 20 });
+    const { missing, bodies } = requestOf({ low: null, high: 1 }, { ...noChoices, fill: 'rbf', minVoxels: 20 });
     assert.deepEqual([missing, bodies], [{ method: 'rbf' }, { min_voxels: 20 }]);
   });
 
+  it('asks for the grid that follows reflectors, and how well traces agree on it', () => {
+    const { grid, attributes } = requestOf({ low: 0, high: 1 }, { ...noChoices, grid: 'auto' });
+    assert.deepEqual([grid, attributes], ['auto', ['reliability', 'body', 'agreement']]);
+    assert.equal(requestOf({ low: 0, high: 1 }).grid, undefined);
+  });
+
   it('comes back from the page address', () => {
-    for (const choices of [noChoices, { fill: 'linear', minVoxels: 0 }, { fill: 'rbf', minVoxels: 7 }]) {
+    for (const choices of [noChoices, { fill: 'linear', minVoxels: 0, grid: 'structural' }, { fill: 'rbf', minVoxels: 7, grid: 'auto' }]) {
       const kept = Object.entries(choicesToAddress(choices)).filter(([, value]) => value !== null);
       assert.deepEqual(choicesFromAddress(new URLSearchParams(kept)), choices);
     }
   });
 
   it('takes the default for what an address says wrongly', () => {
-    assert.deepEqual(choicesFromAddress(new URLSearchParams('missing=magic&min_voxels=-3')), noChoices);
+    assert.deepEqual(choicesFromAddress(new URLSearchParams('missing=magic&min_voxels=-3&grid=round')), noChoices);
   });
 
   it('reads counts, and refuses what is none', () => {
@@ -108,7 +114,7 @@ describe('vertex colours', () => {
   it('fade from plain to pale with the reliability', () => {
     const colours = vertexColours(part, { ...look, colouring: 'reliability' });
     for (const [vertex, value] of part.reliability.entries()) near(colourOf(colours, vertex), new Array(3).fill(1 - filledShare(value)));
-    assert.deepEqual([...filledOf(part, 'reliability')], [0, 255, Math.round(255 * filledShare(51))]);
+    assert.deepEqual([...palenessOf(part, 'reliability')], [0, 255, Math.round(255 * filledShare(51))]);
   });
 
   it('show all that was filled in, the least reliable most', () => {
@@ -117,11 +123,19 @@ describe('vertex colours', () => {
     for (let value = 1; value < 256; ++value) assert.ok(filledShare(value) < filledShare(value - 1));
   });
 
+  it('fade where traces do not agree along the reflectors', () => {
+    const tied = { ...part, agreement: Uint8Array.of(255, 0, 102) };
+    const colours = vertexColours(tied, { ...look, colouring: 'agreement' });
+    for (const [vertex, value] of tied.agreement.entries()) near(colourOf(colours, vertex), new Array(3).fill(1 - doubtfulShare(value)));
+    assert.deepEqual([...palenessOf(tied, 'agreement')], [0, 255, 153]);
+    assert.deepEqual(colouringsOf([tied]), ['plain', 'bodies', 'reliability', 'agreement']);
+  });
+
   it('are plain in a part where everything was measured', () => {
     const measured = { ...part, reliability: null };
     near([...vertexColours(measured, { ...look, colouring: 'reliability' })], new Array(9).fill(1));
-    assert.equal(filledOf(measured, 'reliability'), null);
-    assert.equal(filledOf(part, 'bodies'), null);
+    assert.equal(palenessOf(measured, 'reliability'), null);
+    assert.equal(palenessOf(part, 'bodies'), null);
   });
 
   it('are offered where the parts have what they need', () => {

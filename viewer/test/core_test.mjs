@@ -3,8 +3,9 @@ import { describe, it } from 'node:test';
 
 import { GeosisApi } from '../core/api.js';
 import {
-  describe as sentenceOf, failed, idle, levelKnown, levelShown, manifestCame, progressed, started,
+  describe as sentenceOf, describeGrid, failed, idle, levelKnown, levelShown, manifestCame, progressed, started,
 } from '../core/extraction_state.js';
+import { EventReader } from '../core/event_stream.js';
 import { formatBytes, formatCount, formatDistance, formatShare } from '../core/format.js';
 import { Histogram } from '../core/histogram.js';
 import { debounced, Latest } from '../core/latest.js';
@@ -42,6 +43,50 @@ describe('Latest', () => {
 
   it('lets other failures through', async () => {
     await assert.rejects(new Latest().run(async () => { throw new Error('broken'); }), /broken/);
+  });
+});
+
+describe('EventReader', () => {
+  const bytes = new TextEncoder().encode(
+    ': hello\r\n\r\nevent: progress\ndata: {"stage":"fill", "é": 1}\n\nid: 7\nevent: level\ndata: [1,\ndata: 2]\n\ndata: cut');
+
+  it('gives the same events however they arrive', () => {
+    for (const size of [1, 2, 5, 1000]) {
+      const reader = new EventReader();
+      const events = [];
+      for (let at = 0; at < bytes.length; at += size) events.push(...reader.push(bytes.slice(at, at + size)));
+      assert.deepEqual(events, [{ event: 'progress', data: '{"stage":"fill", "é": 1}' }, { event: 'level', data: '[1,\n2]' }], `${size} at once`);
+    }
+  });
+});
+
+describe('a key', () => {
+  it('goes with every call, and only when there is one', async () => {
+    const sent = [];
+    const api = new GeosisApi('', async (url, options) => {
+      sent.push(options?.headers ?? {});
+      return new Response('{"volumes": [], "bodies": []}');
+    });
+    await api.volumes();
+    api.key = 'secret';
+    await api.volumes();
+    await api.createExtraction('v', {});
+    await api.withdraw('e');
+    const { Authorization, ...others } = sent[2];
+    assert.deepEqual([sent[0], sent[1], others, sent[3]], [{}, { Authorization: 'Bearer secret' }, { 'Content-Type': 'application/json' }, sent[1]]);
+    assert.equal(Authorization, 'Bearer secret');
+  });
+});
+
+describe('the grid', () => {
+  const on = (grid) => describeGrid({ manifest: { grid } });
+
+  it('is told where it is not the given one', () => {
+    assert.equal(describeGrid({ manifest: null }), '');
+    assert.equal(describeGrid({ manifest: {} }), '');
+    assert.equal(on({ asked: 'structural', chosen: 'structural', because: 'it was asked for', unreliable_share: 0.034 }),
+      'Joined along the reflectors. 3.4 % of the samples lie where traces hardly agree.');
+    assert.equal(on({ asked: 'auto', chosen: 'given', because: 'dips are small' }), 'Joined along the axes: dips are small.');
   });
 });
 

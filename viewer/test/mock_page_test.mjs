@@ -55,6 +55,26 @@ describe('the page on the mock', { skip: GEOSIS && hasBrowser ? false : 'needs G
     assert.equal(await page.inputValue('#fill'), 'rbf');
   });
 
+  it('asks for a key where the server does, until it is the right one, and keeps it with the tab', async () => {
+    service.mock.key = 'secret';
+    try {
+      await page.reload();
+      await page.waitForSelector('#sign-in', { state: 'visible' });
+      assert.ok(await page.isHidden('#survey-problem'));
+      await page.fill('#key', 'wrong');
+      await page.click('#sign-in button');
+      await page.getByText('the key is not known here').waitFor();
+      await page.fill('#key', 'secret');
+      await page.click('#sign-in button');
+      await waitUntilDone(page);
+      assert.ok(await page.isHidden('#sign-in'));
+      await page.reload();
+      await waitUntilDone(page);
+    } finally {
+      service.mock.key = '';
+    }
+  });
+
   it('does not offer to fill a survey without holes', async () => {
     assert.ok(await page.isVisible('#fill'));
     const { missing } = await reconstructBy(page, () => page.selectOption('#survey', { label: 'whole.sgy' }));

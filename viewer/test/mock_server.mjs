@@ -37,6 +37,8 @@ class Mock {
   extractions = new Map();
 
   refusesBodies = false;
+  /** What every call has to bring; '' = nothing. */
+  key = '';
 
   constructor(geosis, folder, levelDelayMs) {
     Object.assign(this, { geosis, folder, levelDelayMs });
@@ -209,6 +211,8 @@ async function answer(mock, request, response) {
   try {
     const [, pattern, call] = CALLS.find(([method, form]) => method === request.method && form.test(path)) ?? [];
     if (!call) throw new Refusal(404, 'not_found', path);
+    const isOpen = mock.key === '' || !path.startsWith('/v1/') || request.headers.authorization === `Bearer ${mock.key}`;
+    if (!isOpen) throw new Refusal(401, 'unauthenticated', request.headers.authorization ? 'the key is not known here' : 'this needs a key');
     await call(mock, { request, response, path, query, id: pattern.exec(path)[1] });
   } catch (error) {
     if (!(error instanceof Refusal)) throw error;

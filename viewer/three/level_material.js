@@ -3,7 +3,7 @@ import { Color, DoubleSide, FrontSide, MeshStandardMaterial } from 'three';
 /** Distance of the hatch's lines along the pixel rows. */
 const HATCH_PIXELS = 9;
 
-/** The surface's material. Where the attribute `filled` is above zero, it is hatched on the screen. */
+/** The surface's material. Where the attribute `paleness` is above zero, it is hatched on the screen. */
 export class LevelMaterial extends MeshStandardMaterial {
   #hatch = { value: new Color() };
 
@@ -20,10 +20,10 @@ export class LevelMaterial extends MeshStandardMaterial {
   onBeforeCompile(shader) {
     shader.uniforms.hatch = this.#hatch;
     shader.vertexShader = shader.vertexShader
-      .replace('#include <common>', '#include <common>\nattribute float filled;\nvarying float vFilled;')
-      .replace('#include <begin_vertex>', '#include <begin_vertex>\nvFilled = filled;');
+      .replace('#include <common>', '#include <common>\nattribute float paleness;\nvarying float vPaleness;')
+      .replace('#include <begin_vertex>', '#include <begin_vertex>\nvPaleness = paleness;');
     shader.fragmentShader = shader.fragmentShader
-      .replace('#include <common>', '#include <common>\nuniform vec3 hatch;\nvarying float vFilled;')
+      .replace('#include <common>', '#include <common>\nuniform vec3 hatch;\nvarying float vPaleness;')
       .replace('#include <color_fragment>', `#include <color_fragment>\n${HATCH}`);
   }
 
@@ -32,10 +32,10 @@ export class LevelMaterial extends MeshStandardMaterial {
   }
 }
 
-/** Diagonal lines a few pixels apart, with soft edges, stronger the more was filled in. */
+/** Diagonal lines a few pixels apart, with soft edges, stronger the paler. */
 const HATCH = `
   float across = abs(fract((gl_FragCoord.x + gl_FragCoord.y) / ${HATCH_PIXELS.toFixed(1)}) - 0.5);
-  diffuseColor.rgb = mix(diffuseColor.rgb, hatch, vFilled * (1.0 - smoothstep(0.10, 0.22, across)));
+  diffuseColor.rgb = mix(diffuseColor.rgb, hatch, vPaleness * (1.0 - smoothstep(0.10, 0.22, across)));
 `;
 
 /** What is left of the other bodies when one is singled out. */

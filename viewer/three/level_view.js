@@ -1,6 +1,6 @@
 import { BufferAttribute, BufferGeometry, Group, Mesh } from 'three';
 
-import { filledOf, vertexColours } from '../core/colours.js';
+import { palenessOf, vertexColours } from '../core/colours.js';
 import { bodyLast } from '../core/mesh.js';
 import { ghostMaterial, LevelMaterial } from './level_material.js';
 
@@ -82,8 +82,8 @@ function geometryOf(part, look) {
   geometry.setAttribute('normal', new BufferAttribute(part.normals, 3));
   const colours = vertexColours(part, look);
   if (colours) geometry.setAttribute('color', new BufferAttribute(colours, 3));
-  const filled = filledOf(part, look.colouring);
-  if (filled) geometry.setAttribute('filled', new BufferAttribute(filled, 1, true));
+  const paleness = palenessOf(part, look.colouring);
+  if (paleness) geometry.setAttribute('paleness', new BufferAttribute(paleness, 1, true));
   geometry.computeBoundingSphere();
   return geometry;
 }

@@ -1,30 +1,24 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
+#include <memory>
 #include <span>
-#include <vector>
+#include <utility>
 
 #include "engine/base/result.h"
 #include "engine/base/vec3.h"
 #include "engine/volume/geometry.h"
 #include "engine/volume/grid.h"
+#include "engine/volume/node_offsets.h"
+#include "engine/volume/node_report.h"
 
 namespace geosis {
-
-/// A line that carries the nodes of one trace.
-struct Pillar {
-  Vec3d top, bottom;
-};
 
 /// A grid whose nodes lie anywhere: a position each, trilinear between them.
 ///
 /// Positions are kept as float32 from a common origin: to a millimetre over ten kilometres.
 class CurvilinearGeometry final : public GridGeometry {
  public:
-  /// Cells that are turned inside out beside the others may make up this share of all.
-  static constexpr double kMostFolded = 0.01;
-
   /// nodes    shape.count() world positions, sample fastest; at least two nodes an axis.
   /// errors   malformed_input: another number of nodes, one that is not finite, more folded cells than kMostFolded; the
   ///          message says where.
@@ -36,25 +30,27 @@ class CurvilinearGeometry final : public GridGeometry {
   static Result<CurvilinearGeometry> from_pillars(GridShape shape, std::span<const Pillar> pillars,
                                                   std::span<const double> depths);
 
+  /// Nodes that somebody else holds and has looked at: offsets from `origin`, in the bytes that `owner` keeps.
+  CurvilinearGeometry(GridShape shape, Vec3d origin, std::span<const Vec3f> offsets, std::shared_ptr<const void> owner,
+                      const NodeReport& report)
+      : shape_(shape), origin_(origin), nodes_(offsets), owner_(std::move(owner)), report_(report) {}
+
   /// Beyond the grid: the outermost cells go on.
   Vec3d map(Vec3d index) const override;
   const std::array<double, 16>* affine() const override { return nullptr; }
-  bool mirrored() const override { return mirrored_; }
+  bool mirrored() const override { return report_.mirrored; }
 
   GridShape shape() const { return shape_; }
-  double folded_share() const { return folded_share_; }
+  const NodeReport& report() const { return report_; }
 
  private:
-  CurvilinearGeometry(GridShape shape, std::span<const Vec3d> nodes);
   Vec3d node(std::int32_t i, std::int32_t j, std::int32_t k) const;
-  double turn_of(std::int32_t i, std::int32_t j, std::int32_t k, int corner) const;
-  Result<void> find_handedness();
 
   GridShape shape_;
   Vec3d origin_;
-  std::vector<Vec3f> nodes_;  ///< from origin_
-  bool mirrored_ = false;
-  double folded_share_ = 0;
+  std::span<const Vec3f> nodes_;  ///< from origin_
+  std::shared_ptr<const void> owner_;
+  NodeReport report_;
 };
 
 }  // namespace geosis

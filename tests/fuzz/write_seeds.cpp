@@ -14,6 +14,7 @@
 #include "engine/volume/brick_file.h"
 #include "engine/volume/brick_writer.h"
 #include "engine/volume/formats/segy_write.h"
+#include "engine/volume/node_file.h"
 
 namespace {
 
@@ -91,6 +92,27 @@ bool write_grid_seed(const std::filesystem::path& folder) {
   return geosis::write_grid_file(grid, folder / "nine_layers").has_value();
 }
 
+/// Nodes of a grid of 3 x 2 x 4, sample fastest.
+std::vector<geosis::Vec3d> small_nodes() {
+  std::vector<geosis::Vec3d> nodes;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 2; ++j)
+      for (int k = 0; k < 4; ++k) nodes.push_back({25.0 * i, 12.5 * j, 4.0 * k + i});
+  return nodes;
+}
+
+bool write_node_seed(const std::filesystem::path& folder) {
+  auto writer = geosis::NodeFileWriter::create({3, 2, 4}, false, folder / "nodes");
+  return writer && writer->put(small_nodes()) && std::move(*writer).finish(1);
+}
+
+// The fuzz target takes the format from a byte before the file.
+bool write_position_seed(const std::filesystem::path& folder) {
+  const auto nodes = small_nodes();
+  const std::string bytes(reinterpret_cast<const char*>(nodes.data()), nodes.size() * sizeof nodes.front());
+  return write_file(folder / "doubles", "\2" + bytes);
+}
+
 // What clients send. The targets of chunks and forms take the size of pieces from a byte before them.
 bool write_text_seeds(const std::filesystem::path& folder) {
   const std::string request =
@@ -123,12 +145,13 @@ int main(int count, char** arguments) {
   const std::filesystem::path folder = arguments[1];
   std::error_code failed;
   for (const char* target :
-       {"fuzz_import_segy", "fuzz_import_raw", "fuzz_brick_file", "fuzz_fill_file", "fuzz_grid_file", "fuzz_request",
-        "fuzz_http_head", "fuzz_http_chunks", "fuzz_http_target", "fuzz_http_form"})
+       {"fuzz_import_segy", "fuzz_import_raw", "fuzz_brick_file", "fuzz_fill_file", "fuzz_grid_file", "fuzz_node_file",
+        "fuzz_positions", "fuzz_request", "fuzz_http_head", "fuzz_http_chunks", "fuzz_http_target", "fuzz_http_form"})
     std::filesystem::create_directories(folder / target, failed);
   const bool written = !failed && write_segy_seed(folder / "fuzz_import_segy") &&
                        write_raw_seed(folder / "fuzz_import_raw") && write_brick_seed(folder / "fuzz_brick_file") &&
                        write_fill_seed(folder / "fuzz_fill_file") && write_grid_seed(folder / "fuzz_grid_file") &&
+                       write_node_seed(folder / "fuzz_node_file") && write_position_seed(folder / "fuzz_positions") &&
                        write_text_seeds(folder);
   return written ? 0 : 1;
 }

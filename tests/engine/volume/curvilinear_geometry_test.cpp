@@ -32,7 +32,7 @@ TEST(CurvilinearGeometry, IsTrilinearBetweenItsNodes) {
   const auto geometry = CurvilinearGeometry::from_nodes(kShape, nodes_of(plain));
   ASSERT_TRUE(geometry) << geometry.error().message;
   EXPECT_FALSE(geometry->mirrored());
-  EXPECT_EQ(geometry->folded_share(), 0);
+  EXPECT_EQ(geometry->report().folded_share, 0);
   for (const Vec3d p : {Vec3d{0, 0, 0}, {5, 4, 6}, {2.5, 1.25, 3.75}, {-1, 5, 7}}) {
     const Vec3d at = geometry->map(p);
     EXPECT_NEAR(at.x, 1e6 + 25 * p.x, 1e-3);
@@ -67,7 +67,7 @@ TEST(CurvilinearGeometry, TakesPillars) {
   pillars[7].bottom.z = 0;
   const auto level = CurvilinearGeometry::from_pillars(kShape, pillars, depths);
   ASSERT_FALSE(level);
-  EXPECT_EQ(level.error().message, "node positions: pillar 7 has both ends at one depth");
+  EXPECT_EQ(level.error().message, "node positions: the pillar of trace [1,2] has both ends at one depth");
   EXPECT_FALSE(CurvilinearGeometry::from_pillars(kShape, std::span(pillars).first(3), depths));
 }
 
@@ -77,14 +77,15 @@ TEST(CurvilinearGeometry, RefusesNodesThatMakeNoGrid) {
             "node positions: 9; the volume has 210 nodes");
   nodes[35 * 2 + 7 * 3 + 4].y = std::numeric_limits<double>::infinity();
   EXPECT_EQ(CurvilinearGeometry::from_nodes(kShape, nodes).error().message,
-            "node positions: node [2,3,4] is not finite");
+            "node positions: node [2,3,4] is (1000050, inf, 1016): not finite");
   EXPECT_FALSE(CurvilinearGeometry::from_nodes({6, 5, 1}, std::span(nodes).first(30)));
   const auto folded = CurvilinearGeometry::from_nodes(kShape, nodes_of([](int i, int j, int k) {
                                                         return Vec3d{i == 3 ? 1.5 : i, 1.0 * j, 1.0 * k};
                                                       }));
   ASSERT_FALSE(folded);
   EXPECT_EQ(folded.error().code, ErrorCode::malformed_input);
-  EXPECT_EQ(folded.error().message, "node positions: 20.0 % of the cells are folded; at most 1 %");
+  EXPECT_EQ(folded.error().message,
+            "node positions: 20.0 % of the cells are folded; at most 1 %; the first is that from node [2,0,0]");
 }
 
 TEST(CurvilinearGeometry, ToleratesFlatCells) {
@@ -92,7 +93,7 @@ TEST(CurvilinearGeometry, ToleratesFlatCells) {
                                                          return Vec3d{1.0 * i, 1.0 * j, std::min(k, 4) * 1.0};
                                                        }));
   ASSERT_TRUE(pinched);
-  EXPECT_EQ(pinched->folded_share(), 0);
+  EXPECT_EQ(pinched->report().folded_share, 0);
 }
 
 }  // namespace

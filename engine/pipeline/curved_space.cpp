@@ -9,6 +9,7 @@
 
 #include "engine/base/parallel.h"
 #include "engine/isosurface/renumber_bodies.h"
+#include "engine/isosurface/select_bodies.h"
 #include "engine/mesh/empty_edges.h"
 #include "engine/pipeline/output_space.h"
 
@@ -79,6 +80,17 @@ void keep(std::vector<T>& of_vertex, const std::vector<std::int32_t>& index, std
   of_vertex.resize(kept);
 }
 
+/// The largest bodies, which have the first numbers, with the places of their vertices.
+void keep_largest(LabelledSurface& surface, std::uint32_t largest, std::vector<Vec3f>& places) {
+  if (surface.samples.size() <= largest) return;
+  std::size_t kept = 0;
+  for (std::size_t v = 0; v < places.size(); ++v) {
+    if (surface.body[v] < largest) places[kept++] = places[v];
+  }
+  places.resize(kept);
+  select_bodies(surface, {.largest = largest});
+}
+
 }  // namespace
 
 Result<CurvedSpace> bend_surface(const GridGeometry& geometry, GridShape shape, const ReconstructOptions& options,
@@ -113,6 +125,7 @@ Result<CurvedSpace> bend_surface(const GridGeometry& geometry, GridShape shape, 
   keep(surface.body, *index, positions.size());
   keep(curved.places, *index, positions.size());
   renumber_bodies(surface, options.cap, false);
+  if (options.bodies.largest) keep_largest(surface, *options.bodies.largest, curved.places);
   return curved;
 }
 

@@ -24,8 +24,8 @@ struct CurvedSpace {
 };
 
 /// Moves M0 from index coordinates to the world, on a lattice of its own; from then on its coordinates are world
-/// positions from an origin, divided by the scale. Vertices that fall together are merged where topology allows, and
-/// bodies are measured and numbered anew.
+/// positions from an origin, divided by the scale. Vertices that fall together are merged where topology allows; bodies
+/// are measured and numbered anew, and the largest that the options ask for are kept.
 ///
 /// surface  its triangles look outwards in the world already. Not empty.
 /// errors   limit_exceeded: the surface is more than 131,071 of these units long.  cancelled.

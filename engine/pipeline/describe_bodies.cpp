@@ -27,7 +27,8 @@ struct PlacedSurface {
 
 Result<PlacedSurface> place_surface(const ReconstructInput& input, const ReconstructOptions& options,
                                     const BrickedVolume& samples, const LayerMap* layers, Progress& progress) {
-  const bool is_curved = is_curved_space(input.geometry, options);
+  const GridGeometry& geometry = input.grid_geometry();
+  const bool is_curved = is_curved_space(geometry, options);
   PlacedSurface placed;
   if (!is_curved) {
     auto space = output_space(input.geometry, options);
@@ -36,7 +37,8 @@ Result<PlacedSurface> place_surface(const ReconstructInput& input, const Reconst
   }
   const ExtractStage stage{.bodies = true,
                            .amplitudes = true,
-                           .mirrored = is_curved ? input.geometry.mirrored() : placed.space.mirrored(),
+                           .mirrored = is_curved ? geometry.mirrored() : placed.space.mirrored(),
+                           .is_bent = is_curved,
                            .layers = layers};
   auto extracted = extract_stage(samples, options, stage, progress);
   if (!extracted) return std::move(extracted).error();
@@ -45,7 +47,7 @@ Result<PlacedSurface> place_surface(const ReconstructInput& input, const Reconst
   placed.places =
       layers != nullptr && options.index_space ? to_samples(*layers, positions, options.threads) : positions;
   if (!is_curved || positions.empty()) return placed;
-  auto curved = bend_surface(input.geometry, samples.shape(), options, progress, placed.surface);
+  auto curved = bend_surface(geometry, samples.shape(), options, progress, placed.surface);
   if (!curved) return std::move(curved).error();
   placed.space = curved->space;
   placed.places = std::move(curved->places);

@@ -14,8 +14,9 @@ constexpr double kBytesPerTriangle = 1.6;       // encoded, of any level
 constexpr double kMoreBytesPerAttribute = 0.3;  // each: normals, bodies, reliability, value
 constexpr double kFixedMemory = 1 << 20;
 constexpr double kMemoryPerThread = 1 << 19;
-constexpr double kMemoryPerTriangle = 125;  // of M0
-constexpr double kFixedSeconds = 0.15;      // of one core
+constexpr double kMemoryPerTriangle = 125;      // of M0
+constexpr double kMemoryPerPlacedTriangle = 8;  // places among the samples; nodes are a mapped file
+constexpr double kFixedSeconds = 0.15;          // of one core
 constexpr double kSecondsPerTriangle = 2.2e-6;
 constexpr double kParallelShare = 0.85;
 constexpr double kGridMemoryPerSample = 8;  // of laying a structural grid, which is over before there are triangles
@@ -28,9 +29,13 @@ double levels_per_triangle(const ReconstructOptions& options) {
   return sum;
 }
 
+bool may_be_structural(const ReconstructOptions& options) {
+  return options.grid == GridChoice::structural || options.grid == GridChoice::automatic;
+}
+
 double attributes(const ReconstructOptions& options, bool is_filled) {
   return (options.normals ? 1 : 0) + (options.attributes.body ? 1 : 0) + (options.attributes.value ? 1 : 0) +
-         (options.attributes.agreement && options.grid != GridChoice::given ? 1 : 0) +
+         (options.attributes.agreement && may_be_structural(options) ? 1 : 0) +
          (options.attributes.reliability && is_filled ? 1 : 0);
 }
 
@@ -45,9 +50,11 @@ ReconstructEstimate estimate_reconstruction(const BrickedVolume& samples, const 
   const bool is_filled = options.fill.method != FillMethod::none && has_missing(samples);
   const double threads = std::max(options.threads, 1);
   const double bytes_per_triangle = kBytesPerTriangle + kMoreBytesPerAttribute * attributes(options, is_filled);
-  const double laid = options.grid == GridChoice::given ? 0 : static_cast<double>(samples.shape().count());
+  const double laid = may_be_structural(options) ? static_cast<double>(samples.shape().count()) : 0;
   const double one_core = kFixedSeconds + kSecondsPerTriangle * triangles + kGridSecondsPerSample * laid;
-  const double memory = std::max(kMemoryPerTriangle * triangles, kGridMemoryPerSample * laid);
+  const bool is_placed = options.grid == GridChoice::curvilinear && !options.index_space;
+  const double per_triangle = kMemoryPerTriangle + (is_placed ? kMemoryPerPlacedTriangle : 0);
+  const double memory = std::max(per_triangle * triangles, kGridMemoryPerSample * laid);
   return {
       .triangles = static_cast<std::uint64_t>(triangles),
       .bytes = static_cast<std::uint64_t>(kFixedBytes + bytes_per_triangle * levels_per_triangle(options) * triangles),

@@ -45,6 +45,10 @@ Result<StageGrid> grid_stage(const ReconstructInput& input, const ReconstructOpt
   StageGrid stage;
   if (options.grid == GridChoice::given) return stage;
   stage.report.emplace();
+  if (options.grid == GridChoice::curvilinear) {
+    if (input.nodes != nullptr) stage.report->nodes = input.nodes->report();
+    return stage;
+  }
   if (options.grid == GridChoice::automatic) {
     auto dips = input.dips != nullptr   ? Result<DipReport>(*input.dips)
                 : input.grid != nullptr ? Result<DipReport>(input.grid->report.dips)

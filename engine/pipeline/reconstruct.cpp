@@ -86,6 +86,13 @@ Result<void> check_attribute_volume(const ReconstructInput& input, const Reconst
   return Error{ErrorCode::invalid_argument, "the attribute volume has another shape than the volume"};
 }
 
+Result<void> check_nodes(const ReconstructInput& input, const ReconstructOptions& options) {
+  if (options.grid != GridChoice::curvilinear) return {};
+  if (input.nodes == nullptr) return Error{ErrorCode::invalid_argument, "a curvilinear grid needs its nodes"};
+  if (input.nodes->shape() == input.samples.shape()) return {};
+  return Error{ErrorCode::invalid_argument, "the grid has another shape than the volume"};
+}
+
 BuildLodsOptions simplification(const ReconstructOptions& options, const Progress& progress) {
   BuildLodsOptions build;
   build.levels = options.levels;
@@ -207,9 +214,12 @@ class Levels {
 Result<Reconstruction> run_stages(const Run& run) {
   auto samples = timed(run.timings.fill, [&] { return fill_stage(run.input, run.options, run.progress); });
   if (!samples) return std::move(samples).error();
-  const bool is_curved = is_curved_space(run.input.geometry, run.options);
-  const bool mirrored = is_curved ? run.input.geometry.mirrored() : run.space.mirrored();
-  const ExtractStage stage{.bodies = run.options.attributes.body, .mirrored = mirrored, .layers = run.layers};
+  const GridGeometry& geometry = run.input.grid_geometry();
+  const bool is_curved = is_curved_space(geometry, run.options);
+  const ExtractStage stage{.bodies = run.options.attributes.body,
+                           .mirrored = is_curved ? geometry.mirrored() : run.space.mirrored(),
+                           .is_bent = is_curved,
+                           .layers = run.layers};
   auto m0 =
       timed(run.timings.extract, [&] { return extract_stage(*samples->samples, run.options, stage, run.progress); });
   if (!m0) return std::move(m0).error();
@@ -217,7 +227,7 @@ Result<Reconstruction> run_stages(const Run& run) {
   if (run.progress.cancelled()) return kCancelled;
   if (!is_curved) return Levels(*std::move(m0), *samples, run).make();
   const auto curved = timed(run.timings.extract, [&] {
-    return bend_surface(run.input.geometry, run.input.samples.shape(), run.options, run.progress, m0->surface);
+    return bend_surface(geometry, run.input.samples.shape(), run.options, run.progress, m0->surface);
   });
   if (!curved) return curved.error();
   Run bent = run;
@@ -236,8 +246,10 @@ Result<Reconstruction> run_stages(const Run& run) {
 Result<Reconstruction> reconstruct(const ReconstructInput& input, const ReconstructOptions& options, Progress& progress,
                                    StageTimings* timings, const LevelSink& on_level) {
   if (options.levels.empty()) return Error{ErrorCode::invalid_argument, "no levels asked for"};
+  if (auto checked = check_nodes(input, options); !checked) return std::move(checked).error();
+  const bool is_curved = is_curved_space(input.grid_geometry(), options);
   AffineGeometry space;  // a grid that is not affine has its own, once M0 is there
-  if (!is_curved_space(input.geometry, options)) {
+  if (!is_curved) {
     auto affine = output_space(input.geometry, options);
     if (!affine) return std::move(affine).error();
     space = *affine;
@@ -264,7 +276,7 @@ Result<Reconstruction> reconstruct(const ReconstructInput& input, const Reconstr
                             .on_level = on_level});
   if (!result) return result;
   result->grid = grid->report;
-  if (!is_curved_space(input.geometry, options)) result->transform = *space.affine();
+  if (!is_curved || result->levels.empty()) result->transform = *space.affine();
   return result;
 }
 

@@ -22,6 +22,7 @@
 #include "engine/simplify/build_lods.h"
 #include "engine/structure/structural_grid.h"
 #include "engine/volume/bricks.h"
+#include "engine/volume/curvilinear_geometry.h"
 #include "engine/volume/geometry.h"
 #include "engine/volume/grid.h"
 
@@ -53,6 +54,7 @@ enum class GridChoice {
   given,       ///< those of equal index
   structural,  ///< those on one reflector, on a grid found from the samples
   automatic,   ///< structural where reflectors are steep enough for it to pay
+  curvilinear  ///< those of equal index, whose nodes lie where somebody has put them
 };
 
 /// The request's part that the engine computes from; documents/ turns JSON into it.
@@ -62,7 +64,8 @@ struct ReconstructOptions {
   bool cap = true;
   FillOptions fill = {};  ///< of missing samples, before anything else
   GridChoice grid = GridChoice::given;
-  std::optional<GridBox> region = std::nullopt;  ///< unset = the whole volume
+  std::optional<std::string> grid_id = std::nullopt;  ///< of the curvilinear grid
+  std::optional<GridBox> region = std::nullopt;       ///< unset = the whole volume
   BodyChoice bodies = BodyChoice();
   std::vector<LevelTarget> levels = by_ratio({1, 0.25, 0.0625, 0.015625, 0.00390625});
   Strategy strategy = Strategy::greedy;
@@ -103,6 +106,7 @@ struct GridReport {
   std::optional<StructureReport> structure =
       std::nullopt;         ///< of the structural grid; unset where samples stay connected as given
   std::int32_t layers = 0;  ///< of the structural grid
+  std::optional<NodeReport> nodes = std::nullopt;  ///< of the curvilinear grid, which has nothing of the above
 };
 
 struct Reconstruction {
@@ -132,6 +136,12 @@ struct ReconstructInput {
   const StructuralGrid* grid = nullptr;  ///< the samples' structural grid; null = laid here when it is needed
   const DipReport* dips = nullptr;       ///< of the samples; null = found here when they are needed
   const BrickedVolume* attribute_volume = nullptr;  ///< of equal shape; what the attribute `value` is of
+  const CurvilinearGeometry* nodes = nullptr;       ///< of equal shape; where the options' curvilinear grid lies
+
+  const GridGeometry& grid_geometry() const {
+    if (nodes != nullptr) return *nodes;
+    return geometry;
+  }
 };
 
 /// The whole way: volume -> grid -> filled volume -> M0 -> levels -> encoded parts -> certificate. The only place where
@@ -142,10 +152,13 @@ struct ReconstructInput {
 /// volumes are of that mesh, in the coordinates (inline, crossline, sample); `space: index` stays on the rectified grid
 /// (inline, crossline, layer). docs/structural-grid.md.
 ///
+/// On a curvilinear grid the surface is extracted in index space too and its topology decided there; then its vertices
+/// go where the nodes say. Bodies too small in cells are left out before, the largest are chosen by their volume in the
+/// world. docs/grids.md.
+///
 /// errors     those of lay_structural_grid, fill_missing, extract_body, build_lods and encode_level.  invalid_argument:
-/// position bits that
-///            cannot hold the volume, `value` without its volume, or with one of another shape.  limit_exceeded: a
-///            surface too long for the lattice.  cancelled.
+///            position bits that cannot hold the volume, `value` or a curvilinear grid without what it needs, or with
+///            one of another shape.  limit_exceeded: a surface too long for the lattice.  cancelled.
 Result<Reconstruction> reconstruct(const ReconstructInput& input, const ReconstructOptions& options, Progress& progress,
                                    StageTimings* timings = nullptr, const LevelSink& on_level = {});
 

@@ -99,7 +99,9 @@ Result<StageSurface> extract_stage(const BrickedVolume& samples, const Reconstru
     auto left = leave_layers(*stage.layers, result.rectified.first, options, stage.mirrored, progress, result.surface);
     if (!left) return std::move(left).error();
   }
-  if (is_labelled) select_bodies(result.surface, options.bodies.filter());
+  BodyFilter filter = options.bodies.filter();
+  if (stage.is_bent) filter.largest.reset();
+  if (is_labelled) select_bodies(result.surface, filter);
   return result;
 }
 

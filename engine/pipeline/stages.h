@@ -26,6 +26,7 @@ struct ExtractStage {
   bool bodies = false;               ///< labels
   bool amplitudes = false;           ///< labels, and the samples of each body
   bool mirrored = false;             ///< the requested space mirrors
+  bool is_bent = false;              ///< bend_surface follows, which chooses the largest bodies
   const LayerMap* layers = nullptr;  ///< of the structural grid, cut to the region; null = the axis grid
 };
 

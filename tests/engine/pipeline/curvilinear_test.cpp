@@ -148,6 +148,106 @@ TEST(Curvilinear, VolumesAndBodiesAreThoseOfTheWorld) {
   EXPECT_EQ((*sheared)[0].samples.voxels, (*plain)[0].samples.voxels);
 }
 
+/// Two balls, the smaller one where cells are twenty times as long.
+const Field kTwoBalls = {"two balls", [](double x, double y, double z) {
+                           return std::max(7 - std::hypot(x - 8.3, y - 17.7, z - 18.1),
+                                           5 - std::hypot(x - 25.3, y - 17.7, z - 18.1));
+                         }};
+const Bending kStretched = {"stretched", false, [](double i, double j, double k) {
+                              return Vec3d{10 * i + (i > 17 ? 190 * (i - 17) : 0), 10 * j, 10 * k};
+                            }};
+
+TEST(Curvilinear, TheLargestBodiesAreThoseOfTheWorldAndSmallOnesThoseOfFewCells) {
+  const auto volume = volume_of(kTwoBalls);
+  const CurvilinearGeometry geometry = geometry_of(kStretched);
+  const ReconstructInput input{.samples = *volume, .geometry = AffineGeometry(), .nodes = &geometry};
+  ReconstructOptions options{.range = {0, kInfinity}, .grid = GridChoice::curvilinear, .levels = by_ratio({1})};
+  NoProgress progress;
+  const auto both = describe_bodies(input, options, progress);
+  ASSERT_TRUE(both) << both.error().message;
+  ASSERT_EQ(both->size(), 2u);
+  EXPECT_LT((*both)[0].samples.voxels, (*both)[1].samples.voxels);
+  EXPECT_GT((*both)[0].surface.volume, 5 * (*both)[1].surface.volume);
+  options.bodies.largest = 1;
+  const auto one = describe_bodies(input, options, progress);
+  ASSERT_TRUE(one);
+  ASSERT_EQ(one->size(), 1u);
+  EXPECT_EQ((*one)[0].samples.voxels, (*both)[0].samples.voxels);
+  options.attributes.value = true;
+  ReconstructInput valued{.samples = *volume, .geometry = AffineGeometry(), .nodes = &geometry};
+  valued.attribute_volume = volume.get();
+  const auto surface = reconstruct(valued, options, progress);
+  ASSERT_TRUE(surface);
+  EXPECT_NEAR(surface->levels[0].measures.volume, (*one)[0].surface.volume, 1e-6 * (*one)[0].surface.volume);
+  for (const float value : surface->levels[0].attributes.value) EXPECT_NEAR(value, 0, 0.05);
+  options = {.range = {0, kInfinity}, .grid = GridChoice::curvilinear, .bodies = {.min_voxels = 800}};
+  const auto many_cells = describe_bodies(input, options, progress);
+  ASSERT_TRUE(many_cells);
+  ASSERT_EQ(many_cells->size(), 1u);
+  EXPECT_EQ((*many_cells)[0].samples.voxels, (*both)[1].samples.voxels);
+}
+
+TEST(Curvilinear, IndexSpaceIsThePlainGrid) {
+  const auto volume = volume_of(kFields[1]);
+  const CurvilinearGeometry geometry = geometry_of(kBendings[1]);
+  NoProgress progress;
+  ReconstructOptions options{.range = {0, kInfinity}, .levels = by_ratio({1, 0.25}), .index_space = true};
+  const auto plain = reconstruct({*volume, AffineGeometry()}, options, progress);
+  options.grid = GridChoice::curvilinear;
+  const ReconstructInput input{.samples = *volume, .geometry = AffineGeometry(), .nodes = &geometry};
+  const auto placed = reconstruct(input, options, progress);
+  ASSERT_TRUE(plain && placed);
+  for (std::size_t k = 0; k < 2; ++k) {
+    EXPECT_EQ(placed->levels[k].encoded.parts[0].bytes, plain->levels[k].encoded.parts[0].bytes);
+  }
+  ASSERT_TRUE(placed->grid && placed->grid->nodes);
+  EXPECT_TRUE(placed->grid->nodes->mirrored);
+}
+
+TEST(Curvilinear, RegionsAreCutFromTheWholeGrid) {
+  const auto volume = volume_of(kFields[2]);
+  const CurvilinearGeometry geometry = geometry_of(kBendings[0]);
+  const GridBox region{{3, 5, 7}, {20, 30, 31}};
+  NoProgress progress;
+  ReconstructOptions options{.range = {0, kInfinity}, .region = region, .levels = by_ratio({1})};
+  const auto plain = reconstruct({*volume, AffineGeometry()}, options, progress);
+  const auto curved = reconstruct({*volume, geometry}, options, progress);
+  ASSERT_TRUE(plain && curved);
+  EXPECT_EQ(curved->levels[0].topology.euler, plain->levels[0].topology.euler);
+  EXPECT_EQ(curved->levels[0].topology.components, plain->levels[0].topology.components);
+  EXPECT_EQ(curved->levels[0].topology.boundary_loops, 0);
+  const auto& m = curved->transform;
+  const Vec3d first = geometry.map(to_double(plain->levels[0].lod.mesh.positions[0]));
+  const Vec3f p = curved->levels[0].lod.mesh.positions[0];
+  EXPECT_NEAR(m[0] * p.x + m[3], first.x, m[0] / 64);
+  EXPECT_NEAR(m[10] * p.z + m[11], first.z, m[0] / 64);
+}
+
+TEST(Curvilinear, NothingInTheRangeHasAPlainTransform) {
+  const auto volume = volume_of(kFields[0]);
+  const auto result = [&] {
+    NoProgress progress;
+    const CurvilinearGeometry geometry = geometry_of(kBendings[0]);
+    return reconstruct({*volume, geometry}, {.range = {1e6f, kInfinity}}, progress);
+  }();
+  ASSERT_TRUE(result);
+  EXPECT_TRUE(result->levels.empty());
+  EXPECT_EQ(result->transform, *AffineGeometry().affine());
+}
+
+TEST(Curvilinear, IsRefusedWithoutNodesOfItsShape) {
+  const auto volume = volume_of(kFields[0]);
+  const ReconstructOptions options{.range = {0, kInfinity}, .grid = GridChoice::curvilinear};
+  NoProgress progress;
+  EXPECT_FALSE(reconstruct({*volume, AffineGeometry()}, options, progress));
+  std::vector<Vec3d> nodes;
+  for (int n = 0; n < 8; ++n) nodes.push_back({1.0 * (n >> 2), 1.0 * (n >> 1 & 1), 1.0 * (n & 1)});
+  const auto other = CurvilinearGeometry::from_nodes({2, 2, 2}, nodes);
+  ASSERT_TRUE(other);
+  const ReconstructInput input{.samples = *volume, .geometry = AffineGeometry(), .nodes = &*other};
+  EXPECT_FALSE(reconstruct(input, options, progress));
+}
+
 TEST(Curvilinear, SurfacesAreTheSameForAnyNumberOfThreads) {
   const auto volume = volume_of(kFields[2]);
   const CurvilinearGeometry geometry = geometry_of(kBendings[0]);

@@ -3,7 +3,8 @@
 #
 #     ./levels.sh http://127.0.0.1:8080 survey.sgy 0.5 null levels
 #
-# An open end of the range is null. A server with keys: KEY=... ./levels.sh ...
+# An open end of the range is null. A server with keys: KEY=... ./levels.sh ... Where the survey's nodes lie, as float64 x, y, z
+# of each, sample fastest: NODES=FILE ./levels.sh ...
 set -eu
 server=$1 survey=$2 low=$3 high=$4 out=$5
 
@@ -15,8 +16,15 @@ location() { call -o /dev/null -D - "$@" | tr -d '\r' | sed -n 's/^[Ll]ocation: 
 volume=$server$(location --data-binary @"$survey" -H 'Content-Type: application/octet-stream' "$server/v1/volumes?name=survey")
 echo "volume      $volume"
 
+grid=given
+if [ -n "${NODES:-}" ]; then
+  grid=$(location --data-binary @"$NODES" -H 'Content-Type: application/octet-stream' "$volume/grids?dtype=float64")
+  grid=${grid##*/}
+  echo "grid        $grid"
+fi
+
 # Asking again for the same is free; each time waits for the result, up to a minute.
-ask() { location -H 'Prefer: wait=60' -H 'Content-Type: application/json' -d "{\"range\": [$low, $high]}" "$volume/extractions"; }
+ask() { location -H 'Prefer: wait=60' -H 'Content-Type: application/json' -d "{\"range\": [$low, $high], \"grid\": \"$grid\"}" "$volume/extractions"; }
 extraction=$server$(ask)
 echo "extraction  $extraction"
 mkdir -p "$out"

@@ -48,7 +48,8 @@ ReconstructInput reconstruct_input(const ExtractionInput& input, const Reconstru
           .filled = input.filled,
           .grid = input.grid,
           .dips = input.dips,
-          .attribute_volume = input.attribute_volume};
+          .attribute_volume = input.attribute_volume,
+          .nodes = input.nodes};
 }
 
 Result<Json> compute_extraction(Extraction& extraction, const ExtractionInput& input, const ReconstructOptions& options,

@@ -17,12 +17,13 @@ using PartWriter = std::function<Result<void>(int level, int part, std::span<con
 
 /// Volumes that an extraction reads, whoever holds them.
 struct ExtractionInput {
-  const VolumeSummary& volume;
+  const VolumeSummary& volume;  ///< as the request's grid places it
   const BrickedVolume& samples;
   const DipReport* dips = nullptr;                  ///< when the grid is chosen by them and they are known already
   const StructuralGrid* grid = nullptr;             ///< when one is needed and it is there already
   const FilledVolume* filled = nullptr;             ///< when the request fills and the fill is there already
   const BrickedVolume* attribute_volume = nullptr;  ///< when the request names one
+  const CurvilinearGeometry* nodes = nullptr;       ///< likewise
 };
 
 ReconstructInput reconstruct_input(const ExtractionInput& input, const ReconstructOptions& options);

@@ -89,6 +89,17 @@ Result<void> Extractions::purge_results_of(const std::string& volume) {
   return fills_.remove(volume);
 }
 
+Result<void> Extractions::purge_results_on(const std::string& volume, const std::string& grid) {
+  const auto ids = store_.children(result_key(volume, ""));
+  if (!ids) return ids.error();
+  for (const std::string& id : *ids) {
+    const auto record = read_document(id, kRequest);
+    if (!record || record->at("volume") != volume || record->at("request").value("grid", Json()) != grid) continue;
+    if (auto done = purge(id); !done && done.error().code != ErrorCode::not_found) return done;
+  }
+  return {};
+}
+
 Result<void> Extractions::collect_garbage() {
   const auto ids = store_.children(tenant_ + "/extractions/");
   if (!ids) return ids.error();

@@ -6,6 +6,7 @@
 #include "engine/pipeline/grid_stage.h"
 #include "server/app/extractions.h"
 #include "server/documents/ids.h"
+#include "server/documents/node_grid_document.h"
 #include "server/documents/request.h"
 #include "server/documents/request_check.h"
 
@@ -59,6 +60,10 @@ Error stopping() {
   return {ErrorCode::cancelled, "the server is stopping"};
 }
 
+Error about_grid(const Error& error) {
+  return {error.code, "request /grid: " + error.message};
+}
+
 }  // namespace
 
 Result<void> Extractions::submit(const std::shared_ptr<Extraction>& extraction, const std::string& owner,
@@ -105,12 +110,13 @@ Result<void> Extractions::compute(Extraction& extraction, const std::string& own
 }
 
 ExtractionInput Extractions::Opened::input() const {
-  return {.volume = volume->summary,
+  return {.volume = summary,
           .samples = *volume->samples,
           .dips = dips ? &*dips : nullptr,
           .grid = grid.get(),
           .filled = filled ? filled->samples.get() : nullptr,
-          .attribute_volume = attribute_volume ? attribute_volume->samples.get() : nullptr};
+          .attribute_volume = attribute_volume ? attribute_volume->samples.get() : nullptr,
+          .nodes = nodes ? &nodes->geometry : nullptr};
 }
 
 Result<Extractions::Opened> Extractions::open(const Extraction::Identity& identity, Progress& progress,
@@ -125,6 +131,7 @@ Result<Extractions::Opened> Extractions::open(const Extraction::Identity& identi
   if (!other) return std::move(other).error();
   timings.load = seconds_since(start);
   Opened opened{.options = *std::move(options), .volume = *std::move(volume), .attribute_volume = *std::move(other)};
+  opened.summary = opened.volume->summary;
   if (auto grid = open_grid(opened, progress); !grid) return volumes_.judged(identity.volume, grid.error());
   timings.grid = seconds_since(start) - timings.load;
   auto filled = fill(opened.volume, opened.options, progress);
@@ -136,6 +143,13 @@ Result<Extractions::Opened> Extractions::open(const Extraction::Identity& identi
 
 Result<void> Extractions::open_grid(Opened& opened, Progress& progress) {
   if (opened.options.grid == GridChoice::given) return {};
+  if (opened.options.grid == GridChoice::curvilinear) {
+    auto nodes = volumes_.grids().open(opened.volume->summary, *opened.options.grid_id);
+    if (!nodes) return about_grid(nodes.error());
+    opened.nodes = *std::move(nodes);
+    opened.summary = placed_on(opened.volume->summary, opened.nodes->summary);
+    return {};
+  }
   if (opened.options.grid == GridChoice::automatic) {
     const auto dips = structures_.dips(*opened.volume, progress);
     if (!dips) return dips.error();
@@ -146,6 +160,13 @@ Result<void> Extractions::open_grid(Opened& opened, Progress& progress) {
   if (!grid) return std::move(grid).error();
   opened.grid = *std::move(grid);
   return {};
+}
+
+Result<void> Extractions::check_grid(const ReconstructOptions& options, const VolumeSummary& volume) const {
+  if (options.grid != GridChoice::curvilinear) return {};
+  const auto grid = volumes_.grids().document(volume.id, *options.grid_id);
+  if (!grid) return about_grid(grid.error());
+  return check_placed_grid(options, *grid);
 }
 
 /// The volume that the attribute `value` is of; null when the request names none.
@@ -175,6 +196,9 @@ Result<std::shared_ptr<Extraction>> Extractions::create_transient(const ByteSour
   if (!options) return std::move(options).error();
   if (options->attribute_volume) {
     return Error{ErrorCode::unsupported, "request /attribute_volume: a one-shot call has no other volume"};
+  }
+  if (options->grid_id) {
+    return Error{ErrorCode::unsupported, "request /grid: a one-shot call has no stored grid"};
   }
   options->threads = threads_;
   auto imported = import_volume(file, upload.import, std::nullopt, progress, &candidates);

@@ -77,6 +77,7 @@ Result<Extractions::Wanted> Extractions::check(const std::string& volume, const 
   if (!options) return std::move(options).error();
   const VolumeSummary& summary = (*stored)->summary;
   if (auto checked = check_request(*options, summary); !checked) return std::move(checked).error();
+  if (auto checked = check_grid(*options, summary); !checked) return std::move(checked).error();
   if (auto other = open_attribute_volume(*options, summary); !other) return std::move(other).error();
   options->threads = threads_;
   return Wanted{*std::move(options), *std::move(stored)};

@@ -92,6 +92,8 @@ class Extractions {
   Result<void> purge(const std::string& id);
   /// Removes all that was derived from a volume: results, and its filled samples and grid.
   Result<void> purge_results_of(const std::string& volume);
+  /// Removes the results that were computed on a grid of a volume.
+  Result<void> purge_results_on(const std::string& volume, const std::string& grid);
   /// Removes what is left of results and fills whose volume or request is gone.
   Result<void> collect_garbage();
 
@@ -161,15 +163,20 @@ class Extractions {
     ReconstructOptions options;
     std::shared_ptr<const StoredVolume> volume;
     std::optional<DipReport> dips{};                       ///< where the grid is chosen by them
-    std::shared_ptr<const StructuralGrid> grid{};          ///< null on the axis grid
+    std::shared_ptr<const StructuralGrid> grid{};          ///< null where the request's grid is no structural one
+    std::shared_ptr<const NodeGrid> nodes{};               ///< null where it names none
     std::shared_ptr<const FilledStoredVolume> filled{};    ///< null when nothing is filled
     std::shared_ptr<const StoredVolume> attribute_volume;  ///< null when the request names none
+
+    VolumeSummary summary{};  ///< of the volume as the nodes place it
 
     ExtractionInput input() const;
   };
   Result<Opened> open(const Extraction::Identity& identity, Progress& progress, ExtractionTimings& timings);
   Result<std::shared_ptr<const StoredVolume>> open_attribute_volume(const ReconstructOptions& options,
                                                                     const VolumeSummary& volume);
+  /// Whether a request makes sense on the grid that it names.
+  Result<void> check_grid(const ReconstructOptions& options, const VolumeSummary& volume) const;
   /// Dips and grid that the request needs.
   Result<void> open_grid(Opened& opened, Progress& progress);
   Result<std::shared_ptr<const FilledStoredVolume>> fill(std::shared_ptr<const StoredVolume> volume,

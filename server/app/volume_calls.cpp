@@ -25,7 +25,8 @@ Result<void> remove_volume(const Services& services, const std::string& id) {
   // A damaged one cannot be shown but can be removed.
   if (!known && known.error().code != ErrorCode::internal) return known.error();
   if (auto purged = services.extractions.purge_results_of(id); !purged) return purged;
-  return services.volumes.remove(id);
+  if (auto removed = services.volumes.remove(id); !removed) return removed;
+  return services.volumes.grids().remove_all(id);
 }
 
 Result<std::shared_ptr<Job>> begin_histogram(const Services& services, const std::string& id, int bins,

@@ -71,6 +71,9 @@ Result<void> Volumes::collect_garbage() {
   for (const std::string& id : *ids) {
     if (!is_id(id)) continue;
     if (auto done = collect_garbage_of(id); !done) return done;
+    const auto is_there = store_.exists(key(id, kVolume));
+    if (!is_there) return is_there.error();
+    if (auto done = *is_there ? grids_.collect_garbage_of(id) : grids_.remove_all(id); !done) return done;
   }
   return {};
 }

@@ -8,7 +8,6 @@
 
 #include "engine/volume/brick_file.h"
 #include "server/app/volume_blobs.h"
-#include "server/documents/ids.h"
 
 namespace geosis::server {
 namespace {
@@ -35,11 +34,6 @@ Json public_document(const Json& volume, const Json& sidecar) {
   return document;
 }
 
-bool is_id(const std::string& text) {
-  return text.size() == 64 &&
-         std::all_of(text.begin(), text.end(), [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
-}
-
 std::string timestamp() {
   const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
   std::tm utc{};
@@ -50,7 +44,7 @@ std::string timestamp() {
 }
 
 Volumes::Volumes(BlobStore& store, std::string tenant, int threads)
-    : store_(store), tenant_(std::move(tenant)), threads_(threads) {}
+    : store_(store), tenant_(std::move(tenant)), threads_(threads), grids_(store, tenant_, threads) {}
 
 /// The right to have a folder of data without a volume.json that names it, as long as it lives.
 class Volumes::Upload {

@@ -18,6 +18,8 @@
 #include "engine/volume/formats/import.h"
 #include "engine/volume/slice.h"
 #include "server/app/file_identity.h"
+#include "server/app/grids.h"
+#include "server/documents/ids.h"
 #include "server/documents/json_text.h"
 #include "server/documents/volume_document.h"
 #include "server/store/blob_store.h"
@@ -60,6 +62,8 @@ class Volumes {
                            std::vector<GridCandidate>& candidates);
 
   const std::string& tenant() const { return tenant_; }
+  /// Grids that belong to the volumes.
+  Grids& grids() { return grids_; }
 
   /// errors   not_found.  internal: what is stored is damaged.
   Result<std::shared_ptr<const StoredVolume>> open(const std::string& id);
@@ -70,7 +74,8 @@ class Volumes {
   /// Changes name and crs of the sidecar; null removes. Changes at one time, by whatever process, all take effect.
   /// errors: invalid_argument: another field, not a string.
   Result<Json> change(const std::string& id, const Json& changes);
-  /// Forgets the volume. What was derived from it is Extractions' to remove.
+  /// Forgets the volume. What was derived from it is Extractions' to remove, and its grids stay until somebody removes
+  /// them: a damaged volume that is uploaded again has them still.
   Result<void> remove(const std::string& id);
 
   Result<Histogram> histogram(const std::string& id, int bins, Progress& progress);
@@ -80,7 +85,7 @@ class Volumes {
   /// the store, and the volume's next upload replaces it.
   Error judged(const std::string& id, Error error);
 
-  /// Removes what uploads of processes that are gone left without a volume.json.
+  /// Removes what uploads of processes that are gone left without a volume.json, and grids of volumes that are gone.
   Result<void> collect_garbage();
 
  private:
@@ -108,14 +113,12 @@ class Volumes {
   BlobStore& store_;
   const std::string tenant_;
   const int threads_;
+  Grids grids_;
   std::mutex mutex_;               ///< of what follows
   std::list<Opened> recent_;       ///< most recently opened first
   std::set<std::string> uploads_;  ///< of this process, whose volume.json may still be missing
   std::set<std::string> damaged_;  ///< ids
 };
-
-/// 64 lower-case hexadecimal digits: what ids look like.
-bool is_id(const std::string& text);
 
 /// The present moment as documents show it: 2026-01-31T12:00:00Z.
 std::string timestamp();

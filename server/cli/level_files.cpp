@@ -7,7 +7,6 @@
 #include "engine/codec/obj.h"
 #include "engine/codec/ply.h"
 #include "engine/codec/stl.h"
-#include "engine/pipeline/output_space.h"
 #include "server/documents/volume_document.h"
 
 namespace geosis::server {
@@ -115,24 +114,22 @@ bool is_result_file(const std::string& name) {
   return without_number(*after_level, ".") == ".drc";
 }
 
-Result<void> write_result(OutputFolder& folder, const VolumeDescription& volume, const ReconstructOptions& options,
+Result<void> write_result(OutputFolder& folder, const VolumeSummary& volume, const ReconstructOptions& options,
                           const Results& results, FileFormats formats, Progress& progress) {
-  const auto space = output_space(volume.geometry, options);
-  if (!space) return space.error();
+  const AffineGeometry space = geometry_of(results.reconstruction.transform);
   const auto& levels = results.reconstruction.levels;
   for (std::size_t level = 0; level < levels.size(); ++level) {
     if (progress.cancelled())
       return Error{ErrorCode::cancelled, "stopped while writing level " + std::to_string(level)};
     progress.report("write", static_cast<double>(level) / static_cast<double>(levels.size()));
     if (auto written = write_parts(folder, levels[level].encoded, level); !written) return written;
-    auto written = write_exports(folder, levels[level], level, formats, *space);
+    auto written = write_exports(folder, levels[level], level, formats, space);
     if (!written) return written;
   }
-  const VolumeSummary summary = summarize(volume);
-  auto written = write_document(folder, kBodiesFile, bodies_document(summary, options, results.bodies));
+  auto written = write_document(folder, kBodiesFile, bodies_document(volume, options, results.bodies));
   if (!written) return written;
   return write_document(folder, "manifest.json",
-                        manifest_document(summary, options, results.reconstruction, file_urls()));
+                        manifest_document(volume, options, results.reconstruction, file_urls()));
 }
 
 }  // namespace geosis::server

@@ -35,7 +35,9 @@ struct Results {
 };
 
 /// Writes all levels, bodies.json and then manifest.json.
-Result<void> write_result(OutputFolder& folder, const VolumeDescription& volume, const ReconstructOptions& options,
+///
+/// volume   as the grid of the options places it.
+Result<void> write_result(OutputFolder& folder, const VolumeSummary& volume, const ReconstructOptions& options,
                           const Results& results, FileFormats formats, Progress& progress);
 
 }  // namespace geosis::server

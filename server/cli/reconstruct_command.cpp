@@ -10,6 +10,7 @@
 #include "engine/pipeline/grid_stage.h"
 #include "engine/pipeline/stages.h"
 #include "server/cli/commands.h"
+#include "server/cli/grid_arguments.h"
 #include "server/cli/input.h"
 #include "server/cli/level_files.h"
 #include "server/cli/level_table.h"
@@ -18,6 +19,7 @@
 #include "server/documents/grid_report.h"
 #include "server/documents/ids.h"
 #include "server/documents/manifest.h"
+#include "server/documents/node_grid_document.h"
 #include "server/documents/request.h"
 #include "server/documents/request_check.h"
 
@@ -25,10 +27,11 @@ namespace geosis::server {
 namespace {
 
 struct ReconstructArguments {
-  explicit ReconstructArguments(CLI::App& command) : input(command), request(command) {}
+  explicit ReconstructArguments(CLI::App& command) : input(command), request(command), grid(command) {}
 
   InputArguments input;
   RequestArguments request;
+  GridArguments grid;
   std::string out = "out";
   std::string formats = "drc";
   int threads = default_threads();
@@ -66,12 +69,38 @@ void print_volume(const VolumeDescription& volume) {
 
 void print_grid(GridChoice asked, const GridReport& report) {
   if (asked == GridChoice::automatic) std::printf("grid: %s\n", decide_grid(report.dips).because.c_str());
+  if (report.nodes) {
+    std::printf("grid: curvilinear%s, %.2f %% of the cells folded\n", report.nodes->mirrored ? ", mirrored" : "",
+                100 * report.nodes->folded_share);
+    return;
+  }
   if (!report.structure) {
     std::printf("grid: as given\n");
     return;
   }
   std::printf("grid: structural, %d layers; %.1f %% of the samples unreliable, %.1f %% of the links not tied\n",
               report.layers, 100 * report.structure->unreliable_share, 100 * report.structure->untied_share);
+}
+
+/// The grid of the files given, whose id is what the request names.
+Result<std::optional<NodeGrid>> open_grid(const ReconstructArguments& arguments, const VolumeDescription& volume,
+                                          ReconstructOptions& options, Progress& progress) {
+  auto grid = arguments.grid.open(volume, options.threads, progress);
+  if (!grid) return grid;
+  const auto refusal = [](const std::string& what) {
+    return Error{ErrorCode::invalid_argument, "request /grid: " + what};
+  };
+  if (!*grid) {
+    if (options.grid_id) return refusal("give the grid's file, --grid-nodes for example");
+    return grid;
+  }
+  const std::string& id = (*grid)->summary.digest;
+  if (options.grid != GridChoice::given && options.grid_id != id) return refusal("it is not that of the files, " + id);
+  options.grid = GridChoice::curvilinear;
+  options.grid_id = id;
+  const Json document = node_grid_document((*grid)->summary, "", arguments.grid.kind());
+  if (auto checked = check_placed_grid(options, document); !checked) return std::move(checked).error();
+  return grid;
 }
 
 /// The volume that the attribute `value` is of, whose id takes the place of its file's name.
@@ -107,8 +136,11 @@ Result<void> run_reconstruct(const ReconstructArguments& arguments) {
   Stopwatch watch;
   const auto volume = arguments.input.import(progress);
   if (!volume) return volume.error();
-  const VolumeSummary summary = summarize(volume->description);
+  VolumeSummary summary = summarize(volume->description);
   if (auto checked = check_request(*options, summary); !checked) return checked;
+  const auto nodes = open_grid(arguments, volume->description, *options, progress);
+  if (!nodes) return nodes.error();
+  if (*nodes) summary = placed_on(summary, (*nodes)->summary);
   const auto other = import_attribute_volume(arguments, summary, *options, progress);
   if (!other) return other.error();
   const double import_seconds = watch.lap();
@@ -116,7 +148,8 @@ Result<void> run_reconstruct(const ReconstructArguments& arguments) {
   ReconstructInput input{.samples = *volume->samples,
                          .geometry = volume->description.geometry,
                          .has_lengths = has_lengths(summary, *options),
-                         .attribute_volume = *other ? (*other)->samples.get() : nullptr};
+                         .attribute_volume = *other ? (*other)->samples.get() : nullptr,
+                         .nodes = *nodes ? &(*nodes)->geometry : nullptr};
   const auto grid = grid_stage(input, *options, progress);  // once for both that follow
   if (!grid) return grid.error();
   input.grid = grid->structural;
@@ -132,7 +165,7 @@ Result<void> run_reconstruct(const ReconstructArguments& arguments) {
   const auto bodies = describe_bodies(input, *options, progress);
   if (!bodies) return bodies.error();
   const double bodies_seconds = watch.lap();
-  auto written = write_result(*folder, volume->description, *options, {*reconstruction, *bodies}, *formats, progress);
+  auto written = write_result(*folder, summary, *options, {*reconstruction, *bodies}, *formats, progress);
   if (written) written = folder->commit(is_result_file);
   if (!written) return written;
   const double write_seconds = watch.lap();

@@ -38,6 +38,8 @@ const char* name_of(GridChoice choice) {
       return "structural";
     case GridChoice::automatic:
       return "auto";
+    case GridChoice::curvilinear:
+      return "curvilinear";
   }
   return "given";
 }
@@ -87,6 +89,16 @@ Json grid_document(GridChoice asked, const GridReport& report) {
     document["untied_share"] = report.structure->untied_share;
   }
   return document;
+}
+
+Json placed_grid_document(const std::string& id, const NodeReport& nodes, std::optional<double> lattice_step) {
+  return {{"asked", id},
+          {"chosen", name_of(GridChoice::curvilinear)},
+          {"because", "it was asked for"},
+          {"id", id},
+          {"mirrored", nodes.mirrored},
+          {"folded_share", nodes.folded_share},
+          {"lattice_step", lattice_step ? number_or_null(*lattice_step) : Json(nullptr)}};
 }
 
 }  // namespace geosis::server

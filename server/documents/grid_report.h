@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "engine/base/result.h"
 #include "engine/pipeline/reconstruct.h"
 #include "server/documents/json_text.h"
@@ -21,6 +24,11 @@ GridDecision decide_grid(const DipReport& dips);
 
 /// The manifest's "grid": what was asked for, what was chosen and why, and how far it is to be trusted.
 Json grid_document(GridChoice asked, const GridReport& report);
+
+/// The same for a grid that somebody has stored.
+///
+/// lattice_step   of positions, in the world; nullopt in index space.
+Json placed_grid_document(const std::string& id, const NodeReport& nodes, std::optional<double> lattice_step);
 
 const char* name_of(GridChoice choice);
 

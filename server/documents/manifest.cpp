@@ -10,9 +10,20 @@
 namespace geosis::server {
 namespace {
 
-/// Index positions to the requested space, row-major.
-std::array<double, 16> output_transform(const VolumeSummary& volume, const ReconstructOptions& options) {
+/// The levels' positions to the requested space, row-major.
+std::array<double, 16> output_transform(const VolumeSummary& volume, const ReconstructOptions& options,
+                                        const Reconstruction& reconstruction) {
+  if (options.grid == GridChoice::curvilinear) return reconstruction.transform;
   return *output_space(volume.geometry, options)->affine();  // the geometry is affine: this cannot fail
+}
+
+Json chosen_grid_document(const ReconstructOptions& options, const Reconstruction& reconstruction) {
+  const GridReport& report = *reconstruction.grid;
+  if (!report.nodes) return grid_document(options.grid, report);
+  const bool has_lattice = !options.index_space && !reconstruction.levels.empty();
+  return placed_grid_document(
+      options.grid_id.value_or(""), *report.nodes,
+      has_lattice ? std::optional(reconstruction.transform[0] / kLatticeStepsPerVoxel) : std::nullopt);
 }
 
 Json stopped_by_document(StoppedBy reason) {
@@ -117,7 +128,7 @@ bool has_lengths(const VolumeSummary& volume, const ReconstructOptions& options)
 Json manifest_document(const VolumeSummary& volume, const ReconstructOptions& options,
                        const Reconstruction& reconstruction, const ManifestUrls& urls) {
   const Json request = request_document(options, volume.shape);
-  const auto transform = output_transform(volume, options);
+  const auto transform = output_transform(volume, options, reconstruction);
   Json levels = Json::array();
   for (const auto& level : reconstruction.levels) {
     levels.push_back(level_document(level, levels.size(), volume, options, urls));
@@ -131,7 +142,7 @@ Json manifest_document(const VolumeSummary& volume, const ReconstructOptions& op
                    {"levels", levels},
                    {"empty", reconstruction.levels.empty()},
                    {"bodies_url", urls.bodies}};
-  if (reconstruction.grid) manifest["grid"] = grid_document(options.grid, *reconstruction.grid);
+  if (reconstruction.grid) manifest["grid"] = chosen_grid_document(options, reconstruction);
   return manifest;
 }
 

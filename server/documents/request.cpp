@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "server/documents/grid_report.h"
+#include "server/documents/ids.h"
 #include "server/documents/object_reader.h"
 #include "server/documents/request_levels.h"
 #include "server/documents/request_sections.h"
@@ -89,6 +90,24 @@ std::optional<GridBox> read_region(ObjectReader& request, std::optional<Error>& 
   return box;
 }
 
+/// One that the server finds by itself, or the id of one that somebody has stored.
+void read_grid(ObjectReader& request, ReconstructOptions& options) {
+  const Json* value = request.find("grid");
+  if (!value) return;
+  if (value->is_string() && is_id(value->get<std::string>())) {
+    options.grid = GridChoice::curvilinear;
+    options.grid_id = value->get<std::string>();
+    return;
+  }
+  for (const GridChoice choice : {GridChoice::given, GridChoice::structural, GridChoice::automatic}) {
+    if (*value != name_of(choice)) continue;
+    options.grid = choice;
+    return;
+  }
+  request.refuse(request.pointer_to("grid"), *value,
+                 R"("given" or "structural" or "auto", or the id of a grid of the volume)");
+}
+
 /// Two-way travel times become depths with it.
 std::optional<double> read_velocity(ObjectReader& request) {
   const Json* value = request.find("velocity");
@@ -134,7 +153,7 @@ Result<ReconstructOptions> parse_request(const Json& document) {
   ReconstructOptions options;
   options.range = read_range(request);
   options.mode = request.choice("mode", {"exact", "sampled"}) == 0 ? BodyMode::exact : BodyMode::sampled;
-  options.grid = static_cast<GridChoice>(request.choice("grid", {"given", "structural", "auto"}));
+  read_grid(request, options);
   options.index_space = request.choice("space", {"world", "index"}) == 1;
   options.cap = request.boolean("cap", options.cap);
   options.fill = read_missing(request, problem);
@@ -156,7 +175,7 @@ Json request_document(const ReconstructOptions& options, GridShape shape) {
       {"range", {range_end_or_null(options.range.low), range_end_or_null(options.range.high)}},
       {"mode", options.mode == BodyMode::exact ? "exact" : "sampled"},
       {"missing", missing_document(options.fill)},
-      {"grid", name_of(options.grid)},
+      {"grid", options.grid_id.value_or(name_of(options.grid))},
       {"space", options.index_space ? "index" : "world"},
       {"velocity", options.index_space ? Json(nullptr) : or_null(options.velocity)},  // index space has no times
       {"cap", options.cap},

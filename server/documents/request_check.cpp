@@ -49,6 +49,11 @@ Result<void> check_request(const ReconstructOptions& options, const VolumeSummar
   return {};
 }
 
+Result<void> check_placed_grid(const ReconstructOptions& options, const Json& grid) {
+  if (!options.velocity || options.index_space || grid.value("times", false)) return {};
+  return refusal("/velocity", "given, but the grid has depths already");
+}
+
 Result<void> check_attribute_volume(const VolumeSummary& attribute_volume, const VolumeSummary& volume) {
   if (attribute_volume.shape == volume.shape) return {};
   return refusal("/attribute_volume", "a volume of " + dims_text(attribute_volume.shape) +

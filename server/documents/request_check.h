@@ -12,6 +12,11 @@ namespace geosis::server {
 ///          survey that is not in time.
 Result<void> check_request(const ReconstructOptions& options, const VolumeSummary& volume);
 
+/// The same for the grid that the request names, by its document.
+///
+/// errors   invalid_argument: a velocity where the grid has depths already.
+Result<void> check_placed_grid(const ReconstructOptions& options, const Json& grid);
+
 /// The same for the volume that the attribute "value" is of: it must have as many nodes along each axis.
 Result<void> check_attribute_volume(const VolumeSummary& attribute_volume, const VolumeSummary& volume);
 

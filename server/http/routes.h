@@ -13,6 +13,8 @@ namespace geosis::server::http {
 
 /// /v1/volumes and below: upload, list, one, change, remove, histogram, slices.
 void add_volume_routes(Router& router, const ServicesOf& services);
+/// /v1/volumes/{id}/grids and below.
+void add_grid_routes(Router& router, const ServicesOf& services);
 /// /v1/volumes/{id}/extractions, /v1/extractions and below, /v1/extract.
 void add_extraction_routes(Router& router, const ServicesOf& services);
 /// /v1/extractions/{id}/manifest, bodies, lods and below.

@@ -38,6 +38,7 @@ http::Router routes_of(const Tenants& tenants, http::ReplyCache& kept, const htt
     return http::Services{tenants.services(request.tenant), kept};
   };
   http::add_volume_routes(router, services_of);
+  http::add_grid_routes(router, services_of);
   http::add_extraction_routes(router, services_of);
   http::add_result_routes(router, services_of);
   http::add_service_routes(router, checks, page);

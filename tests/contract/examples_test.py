@@ -4,6 +4,7 @@ import hashlib
 import json
 import os
 import shutil
+import struct
 import subprocess
 import sys
 import tempfile
@@ -82,6 +83,17 @@ class Examples(unittest.TestCase):
         self.assertIn("invalid_argument: ", done.stdout)
         self.assertEqual(len(files(shell, ".glb")), 5)
         self.assertEqual(files(shell, ".glb"), files(script, ".glb"))
+
+    def test_shell_places_the_nodes(self):
+        nodes, out = FOLDER / "nodes", self.folder("placed")
+        nodes.write_bytes(b"".join(struct.pack("<3d", 25 * i, 25 * j, 5 * k + 0.02 * k * k)
+                                   for i in range(48) for j in range(56) for k in range(64)))
+        done = subprocess.run([EXAMPLES / "levels.sh", f"http://{SERVICE.address}", SURVEY, "0.5", "null", out], timeout=120,
+                              env={**os.environ, "KEY": KEY, "NODES": str(nodes)}, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        manifest = json.loads((out / "manifest.json").read_text(encoding="utf-8"))
+        self.assertEqual(manifest["grid"]["chosen"], "curvilinear")
+        self.assertEqual(len(files(out, ".glb")), 5)
 
     def test_problems_are_told(self):
         http, out = f"http://{SERVICE.address}", self.folder("refused")

@@ -18,6 +18,8 @@ import unittest
 from pathlib import Path
 
 from contract import OPENAPI, Contract
+from placed_grids import (DIMS, bent, enclosed_volume, mapped, mirrored, node_bytes, pillar_bytes, read_ply, unmatched,
+                          upright)
 from service import GEOSIS, Answer, Client, Service
 from surveys import raw_cube, seismic_line, two_grids
 
@@ -180,6 +182,151 @@ class Volumes(Refusals):
         self.assertEqual(len(CLIENT.get(f"/v1/volumes/{VOLUME}/histogram").json()["counts"]), 256)
         self.refused(CLIENT.get(f"/v1/volumes/{VOLUME}/histogram?bins=0"), 400, "invalid_argument")
         self.refused(CLIENT.get(f"/v1/volumes/{ABSENT}/histogram"), 404, "not_found")
+
+
+class Grids(Refusals):
+    """Surfaces on grids whose nodes somebody has placed, beside a mapping in Python of those on the plain grid."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.volume = CLIENT.upload(raw_cube(*DIMS, lambda i, j, k: 50.0 - (i - 12) ** 2 - (j - 11) ** 2 - (k - 10) ** 2),
+                                   "format=raw&dims=24,22,20").json()["id"]
+
+    def add(self, data, query="", volume=None, **headers):
+        named = {name.replace("_", "-"): value for name, value in headers.items()}
+        return CLIENT.call("POST", f"/v1/volumes/{volume or self.volume}/grids?{query}", data,
+                           {"Content-Type": "application/octet-stream", **named})
+
+    def manifest_and_mesh(self, request, level=0):
+        extraction = done_extraction({"range": [0, None], **request}, self.volume)
+        manifest = CLIENT.get(f"/v1/extractions/{extraction}/manifest").json()
+        return manifest, read_ply(CLIENT.get(f"/v1/extractions/{extraction}/lods/{level}.ply").body), extraction
+
+    def test_a_grid_is_named_by_where_its_nodes_are(self):
+        answer = self.add(pillar_bytes(), "kind=pillars&dtype=float64")
+        grid = answer.json()
+        self.assertEqual((answer.status, grid["kind"], grid["dims"], grid["volume"]),
+                         (201, "pillars", list(DIMS), self.volume))
+        self.assertEqual(answer.headers["location"], f"/v1/volumes/{self.volume}/grids/{grid['id']}")
+        self.assertEqual(grid["box"], [list(upright(0, 0, 0)), list(upright(DIMS[0] - 1, DIMS[1] - 1, DIMS[2] - 1))])
+        again = self.add(node_bytes(upright, ">d"), "kind=nodes&dtype=float64&byte_order=big")
+        self.assertEqual((again.status, again.json()), (200, grid))
+        self.assertEqual(CLIENT.get(answer.headers["location"]).json(), grid)
+        self.assertIn(grid, CLIENT.get(f"/v1/volumes/{self.volume}/grids").json()["grids"])
+        self.assertEqual(CLIENT.call("DELETE", answer.headers["location"]).status, 204)
+        self.refused(CLIENT.get(answer.headers["location"]), 404, "not_found")
+        self.refused(CLIENT.call("DELETE", answer.headers["location"]), 404, "not_found")
+
+    def test_surfaces_lie_where_the_nodes_say(self):
+        plain, (indices, same), _ = self.manifest_and_mesh({"space": "index"})
+        for place, is_mirrored in ((bent, False), (mirrored, True)):
+            grid = self.add(node_bytes(place, "<d"), "dtype=float64").json()
+            self.assertEqual(grid["mirrored"], is_mirrored)
+            manifest, (positions, triangles), extraction = self.manifest_and_mesh({"grid": grid["id"]})
+            chosen = manifest["grid"]
+            self.assertEqual((chosen["asked"], chosen["chosen"], chosen["id"], chosen["mirrored"], chosen["folded_share"]),
+                             (grid["id"], "curvilinear", grid["id"], is_mirrored, 0))
+            for level, other in zip(manifest["levels"], plain["levels"]):
+                for name in ("components", "euler", "genus", "boundary_loops", "manifold"):
+                    self.assertEqual(level[name], other[name])
+            step = chosen["lattice_step"]
+            self.assertEqual(manifest["transform"][0], 64 * step)
+            self.assertEqual((len(positions), len(triangles)), (len(indices), len(same)))
+            self.assertEqual(unmatched([mapped(place, point) for point in indices], positions, manifest["transform"]), [])
+            volume = enclosed_volume(positions, triangles)
+            self.assertGreater(volume, 0)
+            self.assertAlmostEqual(volume, manifest["levels"][0]["volume"], delta=1e-6 * volume)
+            body = CLIENT.get(f"/v1/extractions/{extraction}/bodies").json()["bodies"][0]
+            self.assertAlmostEqual(body["volume"], volume, delta=1e-6 * volume)
+
+    def test_index_space_is_the_plain_grid(self):
+        grid = self.add(node_bytes(mirrored, "<d"), "dtype=float64").json()
+        plain, _, _ = self.manifest_and_mesh({"space": "index"})
+        manifest, _, _ = self.manifest_and_mesh({"space": "index", "grid": grid["id"]})
+        self.assertEqual([level["parts"] for level in manifest["levels"]], [level["parts"] for level in plain["levels"]])
+        self.assertIsNone(manifest["grid"]["lattice_step"])
+
+    def test_regions_caps_levels_and_attributes_work_on_a_grid(self):
+        grid = self.add(node_bytes(bent, "<d"), "dtype=float64").json()["id"]
+        request = {"region": {"inline": [4, 13], "crossline": [3, 20], "sample": [2, 18]}, "cap": False,
+                   "levels": [{"ratio": 1}, {"ratio": 0.25, "error_cap": 1}], "attributes": ["value", "body"],
+                   "attribute_volume": self.volume, "codec": {"normals": True}}
+        plain, (indices, _), _ = self.manifest_and_mesh(request)
+        manifest, (positions, _), _ = self.manifest_and_mesh({**request, "grid": grid})
+        for level, other in zip(manifest["levels"], plain["levels"]):
+            self.assertEqual([level[name] for name in ("euler", "components", "boundary_loops")],
+                             [other[name] for name in ("euler", "components", "boundary_loops")])
+        self.assertEqual(manifest["levels"][0]["boundary_loops"], 1)
+        self.assertEqual(unmatched([mapped(bent, point) for point in indices], positions, manifest["transform"]), [])
+        nothing = done_extraction({"range": [1e6, None], "grid": grid}, self.volume)
+        self.assertTrue(CLIENT.get(f"/v1/extractions/{nothing}/manifest").json()["empty"])
+
+    def test_depths_come_from_another_volume(self):
+        depths = raw_cube(*DIMS, lambda i, j, k: 1500.0 + 6 * k + k * k / 4 + i)
+        z = CLIENT.upload(depths, "format=raw&dims=24,22,20&name=depths").json()["id"]
+        answer = CLIENT.send_json("POST", f"/v1/volumes/{self.volume}/grids", {"z": z})
+        self.assertEqual((answer.status, answer.json()["kind"], answer.json()["times"]), (201, "volumes", False))
+        manifest, (positions, _), _ = self.manifest_and_mesh({"grid": answer.json()["id"]})
+        _, (indices, _), _ = self.manifest_and_mesh({"space": "index"})
+        truth = [mapped(lambda i, j, k: (i, j, 1500.0 + 6 * k + k * k / 4 + i), point) for point in indices]
+        self.assertEqual(unmatched(truth, positions, manifest["transform"]), [])
+
+    def test_a_time_survey_on_a_grid_of_depths_has_lengths(self):
+        dims = CLIENT.get(f"/v1/volumes/{VOLUME}").json()["dims"]
+        nodes = b"".join(struct.pack("<3f", 25 * i, 25 * j, 5 * k) for i in range(dims[0]) for j in range(dims[1])
+                         for k in range(dims[2]))
+        grid = self.add(nodes, volume=VOLUME).json()["id"]
+        level = CLIENT.get(f"/v1/extractions/{done_extraction({**BODY, 'grid': grid})}/manifest").json()["levels"][0]
+        self.assertGreater(level["volume"], 0)
+        self.refused(CLIENT.send_json("POST", f"/v1/volumes/{VOLUME}/extractions", {**BODY, "grid": grid, "velocity": 2000}),
+                     400, "invalid_argument", pointer="/velocity")
+        xs = CLIENT.upload(raw_cube(*dims, lambda i, j, k: 25.0 * i), f"format=raw&dims={','.join(map(str, dims))}").json()["id"]
+        ys = CLIENT.upload(raw_cube(*dims, lambda i, j, k: 25.0 * j), f"format=raw&dims={','.join(map(str, dims))}").json()["id"]
+        times = CLIENT.send_json("POST", f"/v1/volumes/{VOLUME}/grids", {"x": xs, "y": ys}).json()
+        self.assertTrue(times["times"])
+        for velocity, has_volume in ((None, False), (2000, True)):
+            request = {**BODY, "grid": times["id"], "velocity": velocity}
+            level = CLIENT.get(f"/v1/extractions/{done_extraction(request)}/manifest").json()["levels"][0]
+            self.assertEqual(level["volume"] is not None, has_volume)
+
+    def test_what_makes_no_grid_is_refused_and_leaves_nothing(self):
+        before = CLIENT.get(f"/v1/volumes/{self.volume}/grids").json()
+        data = node_bytes(bent)
+        problem = self.refused(self.add(data[:-4]), 422, "malformed_input")
+        self.assertIn(f"{len(data) - 4} bytes; expected {len(data)}", problem["detail"])
+        self.refused(self.add(iter([data, b"x"])), 422, "malformed_input")
+        self.refused(self.add(iter([data[:100]])), 422, "malformed_input")
+        node = (3 * DIMS[1] + 2) * DIMS[2] + 1
+        odd = data[:12 * node] + struct.pack("<f", math.inf) + data[12 * node + 4:]
+        self.assertIn("node [3,2,1] is (inf,", self.refused(self.add(odd), 422, "malformed_input")["detail"])
+        folded = node_bytes(lambda i, j, k: (i, j, -k if i < 4 else k))
+        self.assertRegex(self.refused(self.add(folded), 422, "malformed_input")["detail"],
+                         r"[0-9.]+ % of the cells are folded; at most 1 %; the first is that from node \[0,0,0\]")
+        self.refused(self.add(data, "kind=cells"), 400, "invalid_argument")
+        self.refused(self.add(data, "dtype=int16"), 400, "invalid_argument")
+        self.refused(self.add(data, "colour=red"), 400, "invalid_argument")
+        self.refused(self.add(data, volume=ABSENT), 404, "not_found")
+        digest = base64.b64encode(hashlib.sha256(b"").digest()).decode()
+        self.refused(self.add(data, Content_Digest=f"sha-256=:{digest}:"), 400, "invalid_argument")
+        target = f"/v1/volumes/{self.volume}/grids"
+        for document, status, pointer in (({}, 400, "/z"), ({"w": ABSENT}, 400, "/w"), ({"x": 3}, 400, "/x"), ({"y": ABSENT}, 404, "/y"),
+                                          ({"z": VOLUME}, 400, "/z"), ("{", 400, None), ([], 400, None)):
+            problem = self.refused(CLIENT.send_json("POST", target, document), status)
+            self.assertEqual(problem.get("pointer"), pointer, problem)
+        self.refused(CLIENT.send_json("POST", target, " " * 70000), 413, "limit_exceeded")
+        self.refused(CLIENT.send_json("POST", f"/v1/volumes/{self.volume}/extractions", {"range": [0, None], "grid": ABSENT}), 404,
+                     "not_found", pointer="/grid")
+        self.refused(CLIENT.get(target + "?page_size=0"), 400)
+        self.refused(CLIENT.get(f"{target}/{ABSENT}"), 404)
+        self.assertEqual(CLIENT.get(target).json(), before)
+
+    def test_a_grid_goes_with_its_volume(self):
+        volume = CLIENT.upload(raw_cube(*DIMS, lambda i, j, k: float(i * j + k)), "format=raw&dims=24,22,20").json()["id"]
+        grid = self.add(node_bytes(bent), volume=volume).json()["id"]
+        self.assertEqual(CLIENT.call("DELETE", f"/v1/volumes/{volume}").status, 204)
+        self.refused(CLIENT.get(f"/v1/volumes/{volume}/grids/{grid}"), 404)
+        left = [path for path in (FOLDER / "store" / "objects").rglob("*") if path.is_file() and grid in str(path)]
+        self.assertEqual(left, [])
 
 
 class Slices(Refusals):

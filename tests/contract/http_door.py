@@ -55,6 +55,26 @@ class HttpDoor:
     def histogram(self, volume, bins=None):
         return self._call("GET", f"/v1/volumes/{volume}/histogram" + ("" if bins is None else f"?bins={bins}")).json()
 
+    def upload_grid(self, volume, data, options=None, sha256=None):
+        digest = {"Content_Digest": f"sha-256=:{base64.b64encode(sha256).decode()}:"} if sha256 else {}
+        answer = self._call("POST", f"/v1/volumes/{volume}/grids?{self._query(options or {})}", data,
+                            Content_Type="application/octet-stream", **digest)
+        return answer.json(), answer.status == 201
+
+    def create_grid(self, volume, coordinates):
+        answer = self._call("POST", f"/v1/volumes/{volume}/grids", json.dumps(coordinates), Content_Type="application/json")
+        return answer.json(), answer.status == 201
+
+    def grids(self, volume, page_size=None, page_token=""):
+        size = {} if page_size is None else {"page_size": page_size}
+        return self._call("GET", f"/v1/volumes/{volume}/grids?{self._query({**size, 'page_token': page_token})}").json()
+
+    def grid(self, volume, grid):
+        return self._call("GET", f"/v1/volumes/{volume}/grids/{grid}").json()
+
+    def remove_grid(self, volume, grid):
+        self._call("DELETE", f"/v1/volumes/{volume}/grids/{grid}")
+
     def create(self, volume, request, priority="interactive"):
         return self._call("POST", f"/v1/volumes/{volume}/extractions", json.dumps(request),
                           Content_Type="application/json", Priority=priority).json()

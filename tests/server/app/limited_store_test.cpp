@@ -53,14 +53,16 @@ TEST_F(LimitedStoreTest, ResultsThatWereUsedLongestAgoMakeRoom) {
   EXPECT_FALSE(store->exists("t/volumes/v/fills/2-linear").value());
 }
 
-TEST_F(LimitedStoreTest, VolumesNeverGo) {
+TEST_F(LimitedStoreTest, VolumesAndTheirGridsNeverGo) {
   const auto store = limited(1'000'000);
-  ASSERT_TRUE(commit(*store, "t/volumes/v/data/p.1/bricks", 600'000));
+  ASSERT_TRUE(commit(*store, "t/volumes/v/data/p.1/bricks", 400'000));
+  ASSERT_TRUE(commit(*store, "t/volumes/v/grids/g/nodes-p.2", 200'000));
   put_result(*store, "a", 300'000);
   const auto refused = commit(*store, "t/volumes/w/data/p.2/bricks", 600'000);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, ErrorCode::no_space);
   EXPECT_TRUE(store->exists("t/volumes/v/data/p.1/bricks").value());
+  EXPECT_TRUE(store->exists("t/volumes/v/grids/g/nodes-p.2").value());
   EXPECT_EQ(store->put("t/extractions/x/parts/0.0.drc", bytes(2'000'000)).error().code, ErrorCode::no_space);
   EXPECT_TRUE(store->put("t/extractions/x/run.json", bytes(100)));  // documents still find a place
 }

@@ -136,6 +136,77 @@ class Info(WithFolder):
         self.assertEqual(document["missing"]["samples"], 1)
 
 
+class PlacedGrids(WithFolder):
+    """The sample survey on grids of files."""
+
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.nodes = cls.folder / "nodes"
+        cls.nodes.write_bytes(b"".join(struct.pack("<3d", *cls.place(i, j, k)) for i in range(48) for j in range(56) for k in range(64)))
+        cls.by_nodes = ("--grid-nodes", cls.nodes, "--grid-dtype", "float64")
+
+    @staticmethod
+    def place(i, j, k):
+        return 5e5 + 25.0 * j + 0.25 * k, 6e6 + 25.0 * i, 1000 + 8.0 * k
+
+    def test_info_says_what_the_grid_is(self):
+        run = geosis("info", self.survey, *self.by_nodes)
+        self.expect_success(run)
+        document = json.loads(run.stdout)
+        grid = document["grid"]
+        self.assertEqual((grid["kind"], grid["volume"], grid["dims"]), ("nodes", document["id"], [48, 56, 64]))
+        self.assertEqual((grid["mirrored"], grid["folded_share"], grid["box"][0]), (True, 0, [5e5, 6e6, 1000]))
+
+    def test_pillars_make_the_same_grid(self):
+        pillars = self.folder / "pillars"
+        traces = [(i, j) for i in range(48) for j in range(56)]
+        pillars.write_bytes(
+            b"".join(struct.pack(">6d", *self.place(i, j, 0), *self.place(i, j, 32)) for i, j in traces) +
+            b"".join(struct.pack(">64d", *(self.place(i, j, k)[2] for k in range(64))) for i, j in traces))
+        ids = [json.loads(geosis("info", self.survey, *flags).stdout)["grid"]["id"] for flags in
+               (self.by_nodes, ("--grid-pillars", pillars, "--grid-dtype", "float64", "--grid-byte-order", "big"))]
+        self.assertEqual(ids[0], ids[1])
+
+    def test_surfaces_lie_where_the_nodes_say(self):
+        levels = self.folder / "one-level.json"
+        levels.write_text('{"levels": [{"ratio": 1}]}', encoding="utf-8")
+        request = (*BODY, "--request", levels, "--formats", "obj")
+        out, manifest = self.reconstruct("placed", *request, *self.by_nodes)
+        index_out, plain = self.reconstruct("index", *request, "--space", "index")
+        self.assertEqual(manifest["grid"]["chosen"], "curvilinear")
+        self.assertEqual(manifest["request"]["grid"], manifest["grid"]["id"])
+        for name in ("euler", "components", "boundary_loops", "vertices", "triangles"):
+            self.assertEqual(manifest["levels"][0][name], plain["levels"][0][name], name)
+        found, truth = ([tuple(map(float, line.split()[1:])) for line in (folder / "lod0.obj").read_text(encoding="ascii").splitlines()
+                         if line.startswith("v ")] for folder in (out, index_out))
+        for position, index in zip(found, truth):  # in the same order; linear, so that cells need no looking up
+            wanted = self.place(*index)
+            self.assertLess(max(abs(a - b) for a, b in zip(position, wanted)), 0.51 * manifest["grid"]["lattice_step"])
+
+    def test_depths_come_from_another_survey(self):
+        run = geosis("info", self.survey, "--grid-z", self.survey)  # amplitudes are no depths
+        self.assertEqual(run.returncode, 1)
+        self.assertRegex(run.stderr, r"malformed_input: (z: node \[\d+,\d+,\d+\] is missing|node positions: .* folded)")
+
+    def test_flags_that_make_no_sense_are_refused(self):
+        short = self.folder / "short"
+        short.write_bytes(b"1234")
+        for flags, expected in ((("--grid-nodes", short), "short: node positions: 4 bytes; expected 2064384 for the 48 x 56 x 64 nodes"),
+                                (("--grid-nodes", short, "--grid-z", short), "one of these"),
+                                (("--grid-dtype", "float64"), "need --grid-nodes"),
+                                (("--grid-nodes", short, "--grid-dtype", "int8"), "dtype"),
+                                (("--grid-nodes", self.folder / "absent"), "not_found")):
+            run = geosis("reconstruct", self.survey, *BODY, "--out", self.folder / "refused", *flags)
+            self.assertEqual(run.returncode, 1)
+            self.assertIn(expected, run.stderr)
+        for grid in ("structural", "0" * 64):
+            run = geosis("reconstruct", self.survey, *BODY, "--out", self.folder / "refused", *self.by_nodes, "--grid", grid)
+            self.assertIn("request /grid: it is not that of the files", run.stderr)
+        run = geosis("reconstruct", self.survey, *BODY, "--out", self.folder / "refused", "--grid", "0" * 64)
+        self.assertIn("request /grid: give the grid's file", run.stderr)
+
+
 class Reconstruct(WithFolder):
     def test_writes_five_levels_as_the_manifest_says(self):
         out, manifest = self.reconstruct("five", *BODY)

@@ -14,6 +14,7 @@
 #include "server/grpc/acceptor.h"
 #include "server/grpc/call.h"
 #include "server/grpc/extraction_service.h"
+#include "server/grpc/grid_service.h"
 #include "server/grpc/self_probe.h"
 #include "server/grpc/volume_service.h"
 
@@ -102,7 +103,8 @@ class Door::Running {
               .patience = options.patience,
               .reader_patience = options.reader_patience},
         volumes_(room_),
-        extractions_(room_) {
+        extractions_(room_),
+        grids_(room_) {
     set_up_process();
     tell_to(parts.say);
   }
@@ -117,6 +119,7 @@ class Door::Running {
     set_limits(builder, options);
     builder.RegisterService(&volumes_);
     builder.RegisterService(&extractions_);
+    builder.RegisterService(&grids_);
     taker_ = builder.experimental().AddExternalConnectionAcceptor(
         grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD, secured->server);
     server_ = builder.BuildAndStart();
@@ -144,7 +147,7 @@ class Door::Running {
   void set_serving(bool is_serving) {
     grpc::HealthCheckServiceInterface* const health = server_->GetHealthCheckService();
     health->SetServingStatus(is_serving);
-    for (const char* service : {"geosis.v1.VolumeService", "geosis.v1.ExtractionService"}) {
+    for (const char* service : {"geosis.v1.VolumeService", "geosis.v1.ExtractionService", "geosis.v1.GridService"}) {
       health->SetServingStatus(service, is_serving);
     }
   }
@@ -175,6 +178,7 @@ class Door::Running {
   CallRoom room_;
   VolumeServiceDoor volumes_;
   ExtractionServiceDoor extractions_;
+  GridServiceDoor grids_;
   std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> taker_;
   std::unique_ptr<grpc::Server> server_;
   std::atomic<bool> is_draining_{false};

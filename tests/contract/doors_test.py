@@ -16,6 +16,7 @@ from pathlib import Path
 
 from grpc_door import GrpcDoor
 from http_door import HttpDoor
+from placed_grids import bent, mirrored, node_bytes, pillar_bytes, upright
 from refused import Refused, error_table
 from service import GEOSIS, Service
 from surveys import raw_cube, seismic_line, two_grids
@@ -183,6 +184,82 @@ def structural_grid(door):
     return parts, manifest
 
 
+def grids(door):
+    """However the same positions come, they are one grid."""
+    volume = ball_of(door)
+    first, is_new = door.upload_grid(volume, pillar_bytes(), {"kind": "pillars", "dtype": "float64"})
+    assert is_new and first["kind"] == "pillars", first
+    data = node_bytes(upright, ">d")
+    again, is_new = door.upload_grid(volume, data, {"dtype": "float64", "byte_order": "big"}, hashlib.sha256(data).digest())
+    assert not is_new and again["id"] == first["id"], again
+    other, _ = door.upload_grid(volume, node_bytes(mirrored))
+    assert other["mirrored"], other
+    page = door.grids(volume, page_size=1)
+    rest = door.grids(volume, page_token=page["next_page_token"])
+    shown = door.grid(volume, other["id"])
+    door.remove_grid(volume, other["id"])
+    gone = refusal(door.grid, volume, other["id"])
+    found = [first, other, shown, *page["grids"], *rest["grids"]]
+    return [without(grid, {"created_at"}) for grid in found], gone.code
+
+
+def depths_of(door):
+    depths = raw_cube(24, 22, 20, lambda i, j, k: 1500 + 6 * k + k * k / 4 + i)
+    return door.upload(depths, BALL, name="depths")[0]["id"]
+
+
+def grid_from_volumes(door):
+    grid, is_new = door.create_grid(ball_of(door), {"z": depths_of(door)})
+    assert is_new and grid["kind"] == "volumes", grid
+    assert door.create_grid(ball_of(door), {"z": depths_of(door)})[1] is False
+    return without(grid, {"created_at"})
+
+
+def stream_on_a_grid(door):
+    volume = ball_of(door)
+    grid, _ = door.upload_grid(volume, node_bytes(bent))
+    plain_manifest = door.stream(door.create(volume, {"range": [0, None]})["id"])[1]
+    parts, manifest = door.stream(door.create(volume, {"range": [0, None], "grid": grid["id"]})["id"])
+    assert manifest["grid"]["chosen"] == "curvilinear" and manifest["grid"]["id"] == grid["id"], manifest
+    for level, same in zip(manifest["levels"], plain_manifest["levels"]):
+        for name in ("euler", "components", "genus", "boundary_loops", "manifold"):
+            assert level[name] == same[name], (name, level, same)
+    return parts, manifest
+
+
+def results_go_with_their_grid(door):
+    volume = ball_of(door)
+    grid, _ = door.upload_grid(volume, node_bytes(mirrored, "<d"), {"dtype": "float64"})
+    created = door.create(volume, {"range": [5, None], "grid": grid["id"]})
+    door.watch(created["id"])
+    door.remove_grid(volume, grid["id"])
+    return refusal(door.extraction, created["id"]).code, created["id"]
+
+
+def refused_grids(door):
+    volume, data = ball_of(door), node_bytes(bent)
+    holes = door.upload(raw_cube(24, 22, 20, lambda i, j, k: -1.0 if (i, j, k) == (3, 2, 1) else 1000.0 + i + 4 * k),
+                        {**BALL, "null_value": -1})[0]["id"]
+    small = door.upload(raw_cube(6, 5, 4), RAW)[0]["id"]
+    odd = data[:12 * 45] + b"\0\0\xc0\x7f" + data[12 * 45 + 4:]
+    calls = [(door.upload_grid, (volume, data[:-4])), (door.upload_grid, (volume, data + b"\0")), (door.upload_grid, (volume, odd)),
+             (door.upload_grid, (volume, node_bytes(lambda i, j, k: (i, j, -k if i < 4 else k)))),
+             (door.upload_grid, (volume, data, {"kind": "pillars"})), (door.upload_grid, (volume, data, {"kind": "round"})),
+             (door.upload_grid, (volume, data, {"dtype": "int8"})), (door.upload_grid, (volume, data, {"byte_order": "any"})),
+             (door.upload_grid, (volume, data, {}, hashlib.sha256(b"").digest())), (door.upload_grid, (ABSENT, data)),
+             (door.create_grid, (volume, {})), (door.create_grid, (volume, {"z": "no-id"})), (door.create_grid, (volume, {"x": ABSENT})),
+             (door.create_grid, (volume, {"z": small})), (door.create_grid, (volume, {"y": holes})),
+             (door.create_grid, (ABSENT, {"z": volume})), (door.grids, (ABSENT,)), (door.grids, (volume, 1001)),
+             (door.grid, (volume, ABSENT)), (door.grid, (ABSENT, ABSENT)), (door.remove_grid, (volume, ABSENT)),
+             (door.create, (volume, {"range": [0, None], "grid": ABSENT}))]
+    before = door.grids(volume)["grids"]
+    found = [refusal(call, *arguments) for call, arguments in calls]
+    assert door.grids(volume)["grids"] == before, "a refused grid is still there"
+    pointers = [refused.pointer for (call, _), refused in zip(calls, found) if call in (door.create_grid, door.create)]
+    assert any(pointers)
+    return [refused.code for refused in found], pointers
+
+
 def nothing_in_range(door):
     created = door.create(ball_of(door), {"range": [1e6, None]})
     parts, manifest = door.stream(created["id"])
@@ -301,7 +378,8 @@ def remove(door):
 
 
 SCENARIOS = [upload, upload_of_raw_samples, upload_for_later, upload_for_later_that_fails, list_of_volumes, histogram,
-             whole_request, extraction, watch_again, stream, structural_grid, nothing_in_range, bodies, one_shot,
+             whole_request, extraction, watch_again, stream, structural_grid, grids,
+             grid_from_volumes, stream_on_a_grid, results_go_with_their_grid, refused_grids, nothing_in_range, bodies, one_shot,
              one_shot_leaves_nothing,
              cancel, purge, two_interests, refused_requests, refused_numbers, unknown_ids, refused_files, refused_one_shots,
              remove]

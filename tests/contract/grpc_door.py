@@ -4,7 +4,7 @@ import hashlib
 import math
 
 import grpc
-from geosis.v1 import extraction_pb2, extraction_pb2_grpc, volume_pb2, volume_pb2_grpc
+from geosis.v1 import extraction_pb2, extraction_pb2_grpc, grid_pb2, grid_pb2_grpc, volume_pb2, volume_pb2_grpc
 from google.protobuf import descriptor, timestamp_pb2
 import google_rpc_pb2
 
@@ -95,6 +95,7 @@ class GrpcDoor:
                         grpc.insecure_channel(address, **channel))
         self.volume_stub = volume_pb2_grpc.VolumeServiceStub(self.channel)
         self.extraction_stub = extraction_pb2_grpc.ExtractionServiceStub(self.channel)
+        self.grid_stub = grid_pb2_grpc.GridServiceStub(self.channel)
         self._metadata = (("authorization", f"Bearer {key}"),) if key else ()
 
     def _call(self, method, request, **options):
@@ -139,6 +140,31 @@ class GrpcDoor:
     def histogram(self, volume, bins=None):
         request = volume_pb2.GetHistogramRequest(id=volume, bins=bins or 0)
         return document_of(self._call(self.volume_stub.GetHistogram, request))
+
+    @refusing
+    def upload_grid(self, volume, data, options=None, sha256=None):
+        stated = grid_pb2.UploadGridOptions(volume=volume, sha256=sha256 or b"", bytes=len(data), **(options or {}))
+        reply = self._call(self.grid_stub.UploadGrid, self._upload(data, grid_pb2.UploadGridRequest, stated))
+        return document_of(reply.grid), reply.is_new
+
+    @refusing
+    def create_grid(self, volume, coordinates):
+        request = grid_pb2.CreateGridRequest(volume=volume, coordinates=grid_pb2.Coordinates(**coordinates))
+        reply = self._call(self.grid_stub.CreateGrid, request)
+        return document_of(reply.grid), reply.is_new
+
+    @refusing
+    def grids(self, volume, page_size=None, page_token=""):
+        request = grid_pb2.ListGridsRequest(volume=volume, page_size=page_size or 0, page_token=page_token)
+        return document_of(self._call(self.grid_stub.ListGrids, request))
+
+    @refusing
+    def grid(self, volume, grid):
+        return document_of(self._call(self.grid_stub.GetGrid, grid_pb2.GetGridRequest(volume=volume, id=grid)))
+
+    @refusing
+    def remove_grid(self, volume, grid):
+        self._call(self.grid_stub.DeleteGrid, grid_pb2.DeleteGridRequest(volume=volume, id=grid))
 
     @refusing
     def create(self, volume, request, priority="interactive"):

@@ -9,12 +9,17 @@
 #include <system_error>
 #include <vector>
 
+#include <geosis/v1/extraction.pb.h>
+#include <geosis/v1/volume.pb.h>
+
 #include "engine/missing/fill.h"
 #include "engine/structure/grid_file.h"
 #include "engine/volume/brick_file.h"
 #include "engine/volume/brick_writer.h"
 #include "engine/volume/formats/segy_write.h"
 #include "engine/volume/node_file.h"
+#include "server/documents/json_text.h"
+#include "server/grpc/message_codec.h"
 
 namespace {
 
@@ -113,6 +118,39 @@ bool write_position_seed(const std::filesystem::path& folder) {
   return write_file(folder / "doubles", "\2" + bytes);
 }
 
+std::string with_length(const google::protobuf::Message& message) {
+  const std::string bytes = message.SerializeAsString();
+  return std::string{static_cast<char>(bytes.size() >> 8), static_cast<char>(bytes.size())} + bytes;
+}
+
+/// The first byte of each says which message follows.
+bool write_grpc_seeds(const std::filesystem::path& folder, const std::string& request) {
+  geosis::v1::CreateExtractionRequest create;
+  create.set_volume("a");
+  create.set_priority(geosis::v1::PRIORITY_BATCH);
+  geosis::server::rpc::set_message(*create.mutable_request(), *geosis::server::parse_json(request));
+  geosis::v1::UploadVolumeRequest options, chunk;
+  const auto import = geosis::server::parse_json(
+      R"({"format": "raw", "byte_order": "little", "null_value": -999, "dims": [2, 3, 4], "dtype": "int16", "order": "ijk",
+      "origin": [0, 1, 2], "spacing": [25, 25, 4]})");
+  geosis::server::rpc::set_message(*options.mutable_options()->mutable_import(), *import);
+  options.mutable_options()->set_sha256(std::string(32, 'x'));
+  options.mutable_options()->set_bytes(6);
+  chunk.set_chunk("abc");
+  geosis::v1::ExtractRequest extract, last;
+  *extract.mutable_options()->mutable_request() = create.request();
+  *extract.mutable_options()->mutable_import() = options.options().import();
+  last.set_chunk("survey");
+  geosis::v1::StreamLodsRequest stream;
+  stream.set_id("a");
+  stream.set_from_level(2);
+  return write_file(folder / "upload",
+                    std::string(1, '\0') + with_length(options) + with_length(chunk) + with_length(chunk)) &&
+         write_file(folder / "extract", "\1" + with_length(extract) + with_length(last)) &&
+         write_file(folder / "create", "\2" + create.SerializeAsString()) &&
+         write_file(folder / "stream", "\3" + stream.SerializeAsString());
+}
+
 // What clients send. The targets of chunks and forms take the size of pieces from a byte before them.
 bool write_text_seeds(const std::filesystem::path& folder) {
   const std::string request =
@@ -126,6 +164,7 @@ bool write_text_seeds(const std::filesystem::path& folder) {
       "--b\r\nContent-Disposition: form-data; name=\"options\"\r\n\r\n{\"format\": \"raw\"}\r\n"
       "--b\r\nContent-Disposition: form-data; name=\"file\"; filename=\"a.sgy\"\r\n\r\n\r\n--a\r\n--b--\r\n";
   return write_file(folder / "fuzz_request" / "whole", request) &&
+         write_grpc_seeds(folder / "fuzz_grpc_messages", request) &&
          write_file(folder / "fuzz_http_head" / "post",
                     "POST /v1/volumes?name=a HTTP/1.1\r\nHost: a:80\r\nTransfer-Encoding: chunked\r\n"
                     "Expect: 100-continue\r\nConnection: keep-alive, close\r\n\r\n") &&
@@ -144,9 +183,9 @@ int main(int count, char** arguments) {
   }
   const std::filesystem::path folder = arguments[1];
   std::error_code failed;
-  for (const char* target :
-       {"fuzz_import_segy", "fuzz_import_raw", "fuzz_brick_file", "fuzz_fill_file", "fuzz_grid_file", "fuzz_node_file",
-        "fuzz_positions", "fuzz_request", "fuzz_http_head", "fuzz_http_chunks", "fuzz_http_target", "fuzz_http_form"})
+  for (const char* target : {"fuzz_import_segy", "fuzz_import_raw", "fuzz_brick_file", "fuzz_fill_file",
+                             "fuzz_grid_file", "fuzz_node_file", "fuzz_positions", "fuzz_request", "fuzz_http_head",
+                             "fuzz_http_chunks", "fuzz_http_target", "fuzz_http_form", "fuzz_grpc_messages"})
     std::filesystem::create_directories(folder / target, failed);
   const bool written = !failed && write_segy_seed(folder / "fuzz_import_segy") &&
                        write_raw_seed(folder / "fuzz_import_raw") && write_brick_seed(folder / "fuzz_brick_file") &&

@@ -29,6 +29,21 @@ async function screenshot(name) {
   await page.screenshot({ path: join(GEOSIS_SCREENSHOTS, `${name}.png`) });
 }
 
+/** Places the nodes of the first survey on an arch; returns the ids of both. */
+async function placeGrid() {
+  const { volumes: [volume] } = await (await fetch(`${GEOSIS_URL}/v1/volumes`)).json();
+  const { id, dims: [inlines, crosslines, samples], geometry: { transform } } = volume;
+  const nodes = new Float32Array(3 * inlines * crosslines * samples);
+  let at = 0;
+  for (let i = 0; i < inlines; ++i) for (let j = 0; j < crosslines; ++j) for (let k = 0; k < samples; ++k) {
+    const arch = -0.5 * samples * Math.sin((Math.PI * i) / inlines);
+    for (const row of [0, 4, 8]) nodes[at++] = transform[row] * i + transform[row + 1] * j + transform[row + 2] * (k + arch) + transform[row + 3];
+  }
+  const answer = await fetch(`${GEOSIS_URL}/v1/volumes/${id}/grids?kind=nodes&dtype=float32`, { method: 'POST', body: nodes });
+  assert.equal(answer.status, 201, await answer.clone().text());
+  return [id, (await answer.json()).id];
+}
+
 describe('the page', () => {
   before(async () => {
     mkdirSync(GEOSIS_SCREENSHOTS, { recursive: true });
@@ -129,6 +144,24 @@ describe('the page', () => {
     await reconstructBy(page, () => page.selectOption('#grid', 'auto'));
     assert.match(await page.textContent('#grid-note'), /95 % of the dips are within/);
     assert.deepEqual(page.mistakes, []);
+  });
+
+  it('draws the body where a placed grid puts it', async () => {
+    const [id, grid] = await placeGrid();
+    try {
+      await page.goto(`${GEOSIS_URL}?volume=${id}`);
+      await waitUntilDone();
+      const before = await triangles();
+      await reconstructBy(page, () => page.selectOption('#grid', grid));
+      assert.match(page.url(), new RegExp(`grid=${grid}`));
+      assert.match(await page.textContent('#grid-note'), /^Where the grid's nodes are placed\./);
+      assert.equal(await triangles(), before);
+      assert.ok((await bodyShare()) > 0.005, 'no body is drawn');
+      await screenshot('placed');
+      assert.deepEqual(page.mistakes, []);
+    } finally {
+      await fetch(`${GEOSIS_URL}/v1/volumes/${id}/grids/${grid}`, { method: 'DELETE' });
+    }
   });
 
   it('saves the finest level as a file', async () => {

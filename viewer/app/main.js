@@ -3,10 +3,12 @@ import { describe, describeGrid, idle } from '../core/extraction_state.js';
 import { formatCount, formatShare } from '../core/format.js';
 import { Histogram } from '../core/histogram.js';
 import { debounced, Latest } from '../core/latest.js';
-import { displayTransform, extentOf, suggestedExaggeration } from '../core/placement.js';
+import {
+  cornersOf, displayTransform, extentOf, gridFrame, middleOf, suggestedExaggeration, surveyFrame, toDisplay,
+} from '../core/placement.js';
 import { parseEnd, rangeFromText, rangeMistake, rangeToText } from '../core/range.js';
 import {
-  choicesFromAddress, choicesToAddress, hasMissing, noChoices, parseMinVoxels, requestOf,
+  choicesFromAddress, choicesToAddress, hasMissing, isPlaced, noChoices, parseMinVoxels, requestOf,
 } from '../core/request.js';
 import { PartDecoder } from '../decode/decoder.js';
 import { Stage } from '../three/stage.js';
@@ -30,8 +32,10 @@ const labels = new AxisLabels(element('labels'));
 stage.world.add(box);
 stage.afterDraw((camera, width, height) => labels.follow(camera, stage.world, width, height));
 
-/** The volume on the screen: its document, its way to the display and its histogram. */
+/** The volume on the screen: its document, the grids placed for it, what it is drawn in, its way to the display and its histogram. */
 let volume = null;
+let grids = [];
+let frame = null;
 let display = null;
 let histogram = null;
 let range = { low: null, high: null };
@@ -83,7 +87,10 @@ function reconstruct({ onlyIfNew = false } = {}) {
   if (onlyIfNew && asText === asked) return;
   asked = asText;
   rememberRequest();
-  reconstruction.start(volume.id, request, display);
+  const placed = grids.find(({ id }) => id === choices.grid);
+  const wanted = placed ? gridFrame(placed, volume) : surveyFrame(volume);
+  if (JSON.stringify(wanted) !== JSON.stringify(frame)) showFrame(wanted);
+  reconstruction.start(volume.id, request, frame);
 }
 
 /** The choices as far as this volume has them. */
@@ -160,8 +167,10 @@ async function openSurvey(id, wantedRange) {
   reconstruction.stop();
   showSurveyProblem('');
   await opening.run(async (signal) => {
-    const [document, counts] = await Promise.all([api.volume(id, signal), api.histogram(id, HISTOGRAM_BINS, signal)]);
-    placeVolume(document);
+    const [document, placed, counts] = await Promise.all([
+      api.volume(id, signal), api.grids(id, signal), api.histogram(id, HISTOGRAM_BINS, signal),
+    ]);
+    placeVolume(document, placed);
     histogram = new Histogram(counts);
     histogramView.show(histogram);
     showRange(wantedRange ?? histogram.brightest());
@@ -174,25 +183,41 @@ function nameOf({ id, name }) {
   return (name || id.slice(0, 12)).replace(/\.\w{1,5}$/, '');
 }
 
-function placeVolume(document_) {
+function placeVolume(document_, placed) {
   volume = document_;
-  display = displayTransform(volume.geometry.transform, volume.dims);
-  box.place(volume.dims, display);
-  labels.place(volume, display);
+  grids = placed;
+  showFrame(surveyFrame(volume));
+  listGrids();
   element('fill-choice').hidden = !hasMissing(volume);
-  const extent = extentOf(display, volume.dims);
-  appearance.placeIn(volume.geometry.unit, extent.horizontal);
-  exaggerate(suggestedExaggeration(extent));
-  frame();
   const [inlines, crosslines, samples] = volume.dims.map(formatCount);
   const holes = volume.missing.traces > 0 ? `, ${formatCount(volume.missing.traces)} traces missing` : '';
   element('survey-line').textContent = `${inlines} inlines × ${crosslines} crosslines × ${samples} samples${holes}`;
   document.title = `${volume.name || 'Survey'} – Geosis`;
 }
 
-function frame() {
-  const extent = extentOf(display, volume.dims);
-  stage.frame({ ...extent, vertical: extent.vertical * stage.world.scale.y });
+/** Offers the grids placed for this volume; a choice that it has not is none. */
+function listGrids() {
+  const placed = (option) => isPlaced(option.value);
+  [...element('grid').options].filter(placed).forEach((option) => option.remove());
+  element('grid').append(...grids.map(({ id, kind }) => new Option(`on grid ${id.slice(0, 8)} (${kind})`, id)));
+  if (isPlaced(choices.grid) && !grids.some(({ id }) => id === choices.grid)) choices = { ...choices, grid: 'given' };
+  element('grid').value = choices.grid;
+}
+
+/** Draws in another frame from now on. */
+function showFrame(wanted) {
+  frame = wanted;
+  display = displayTransform(frame.transform, middleOf(frame));
+  box.place(frame.dims, display);
+  labels.place(frame, display);
+  const extent = extentOf(display, frame.dims);
+  appearance.placeIn(frame.unit, extent.horizontal);
+  exaggerate(suggestedExaggeration(extent));
+  frameView();
+}
+
+function frameView() {
+  stage.frame(cornersOf(frame.dims).map((corner) => toDisplay(display, corner)));
 }
 
 function exaggerate(factor) {
@@ -265,7 +290,7 @@ function listenToTools() {
   element('wireframe').addEventListener('change', ({ target }) => {
     appearance.wireframe = target.checked;
   });
-  element('reset').addEventListener('click', () => (volume ? frame() : stage.resetView()));
+  element('reset').addEventListener('click', () => (frame ? frameView() : stage.resetView()));
 }
 
 function listenToDrops() {

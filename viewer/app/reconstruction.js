@@ -3,6 +3,7 @@ import {
 } from '../core/extraction_state.js';
 import { Latest } from '../core/latest.js';
 import { LevelAssembly } from '../core/level_assembly.js';
+import { displayTransform, middleOf } from '../core/placement.js';
 import { Problem } from '../core/problem.js';
 
 /**
@@ -25,11 +26,11 @@ export class Reconstruction {
     this.#onLevel = onLevel;
   }
 
-  /** request   as requestOf() makes it.  display   index -> display of the volume, 12 numbers. */
-  async start(volume, request, display) {
+  /** request   as requestOf() makes it.  frame   what to draw in. */
+  async start(volume, request, frame) {
     this.#set(started());
     try {
-      await this.#newest.run((signal) => this.#follow(volume, request, display, signal));
+      await this.#newest.run((signal) => this.#follow(volume, request, frame, signal));
     } catch (error) {
       this.#set(failed(this.#state, error instanceof Problem ? error.message : `Something went wrong: ${error.message}`));
     }
@@ -46,15 +47,22 @@ export class Reconstruction {
     this.#onState(state);
   }
 
-  async #follow(volume, request, display, signal) {
+  async #follow(volume, request, frame, signal) {
     const { id } = await this.#api.createExtraction(volume, request, signal);
     let isComplete = false;
     signal.addEventListener('abort', () => isComplete || this.#api.withdraw(id));
     this.#listen(id, signal);
     const assembly = new LevelAssembly();
+    const middle = middleOf(frame);
+    const held = []; // parts whose way to the world only the manifest tells
     for await (const item of this.#api.stream(id, signal)) {
-      if (item.kind === 'manifest') this.#set(manifestCame(this.#state, item.manifest));
-      else await this.#decode(item, display, assembly, signal);
+      if (item.kind === 'part') {
+        if (frame.isPlaced) held.push(item);
+        else await this.#decode(item, displayTransform(frame.transform, middle), assembly, signal);
+        continue;
+      }
+      for (const part of held) await this.#decode(part, displayTransform(item.manifest.transform, middle), assembly, signal);
+      this.#set(manifestCame(this.#state, item.manifest));
     }
     isComplete = true;
     if (!this.#state.manifest?.empty) await this.#listBodies(id, signal);

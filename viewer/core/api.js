@@ -31,6 +31,12 @@ export class GeosisApi {
     return this.#json(`/v1/volumes/${encodeURIComponent(id)}`, { signal });
   }
 
+  /** The grids that somebody has placed for a volume. */
+  async grids(id, signal) {
+    const { grids } = await this.#json(`/v1/volumes/${encodeURIComponent(id)}/grids?page_size=100`, { signal });
+    return grids;
+  }
+
   histogram(id, bins, signal) {
     return this.#json(`/v1/volumes/${encodeURIComponent(id)}/histogram?bins=${bins}`, { signal });
   }

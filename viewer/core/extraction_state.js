@@ -96,11 +96,16 @@ export function describeBodies({ phase, manifest, bodies, bodiesProblem }) {
 export function describeGrid({ manifest }) {
   const grid = manifest?.grid;
   if (!grid) return '';
+  if (grid.chosen === 'curvilinear') return `Where the grid's nodes are placed.${describeFolds(grid)}`;
   const what = grid.chosen === 'structural' ? 'Joined along the reflectors' : 'Joined along the axes';
   const why = grid.asked === 'auto' ? `: ${grid.because}` : '';
   const doubt = grid.chosen === 'structural' && grid.unreliable_share > 0
     ? ` ${formatShare(grid.unreliable_share)} of the samples lie where traces hardly agree.` : '';
   return `${what}${why}.${doubt}`;
+}
+
+function describeFolds({ folded_share: folded }) {
+  return folded > 0 ? ` ${formatShare(folded)} of its cells are folded: the surface may cross itself there.` : '';
 }
 
 function describeSurface({ components, genus, manifold }) {

@@ -24,11 +24,36 @@ export function toWorld(transform, [i, j, k]) {
 }
 
 /**
- * Index to display as 12 numbers, the first three rows of a row-major 4 x 4, around the survey's middle.
- * The subtraction of the middle is done here, in double.
+ * What the page draws in: an outline of dims nodes an axis, which transform takes to the world, its axes' names and numbers.
+ *
+ * isPlaced   levels have coordinates of their own, and only their manifest's transform takes them to the world.
  */
-export function displayTransform(transform, dims) {
-  const middle = toWorld(transform, dims.map((count) => (count - 1) / 2));
+export function surveyFrame({ dims, axes, geometry }) {
+  return {
+    dims, axes, names: ['Inline', 'Crossline', verticalName(axes.sample.unit)], transform: geometry.transform, unit: geometry.unit, isPlaced: false,
+  };
+}
+
+/** The same around a grid whose nodes somebody has placed: the box of its nodes. */
+export function gridFrame({ box: [low, high], times }, { geometry }) {
+  const sides = high.map((end, axis) => end - low[axis]);
+  const axis = (number) => ({ first: low[number], step: sides[number] });
+  const transform = [0, 1, 2].flatMap((row) => [...[0, 1, 2].map((column) => (row === column ? sides[row] : 0)), low[row]]);
+  return {
+    dims: [2, 2, 2], axes: { inline: axis(0), crossline: axis(1), sample: axis(2) }, names: ['x', 'y', verticalName(times ? 'ms' : geometry.unit)],
+    transform: [...transform, 0, 0, 0, 1], unit: geometry.unit, isPlaced: true,
+  };
+}
+
+export function middleOf({ transform, dims }) {
+  return toWorld(transform, dims.map((count) => (count - 1) / 2));
+}
+
+/**
+ * A level's coordinates to the display as 12 numbers, the first three rows of a row-major 4 x 4, around a middle in the
+ * world. The subtraction of the middle is done here, in double.
+ */
+export function displayTransform(transform, middle) {
   const row = (number, sign) => [
     ...[0, 1, 2].map((column) => sign * transform[4 * number + column]),
     sign * (transform[4 * number + 3] - middle[number]),
@@ -47,6 +72,15 @@ export function extentOf(display, dims) {
   return { horizontal: Math.max(span(0), span(2)), vertical: span(1) };
 }
 
+/**
+ * How far from the origin an eye has to be that looks at it along -z, so that it sees all points.
+ *
+ * halfWidth, halfHeight   of what it sees, at distance 1.
+ */
+export function distanceToSee(points, halfWidth, halfHeight) {
+  return Math.max(...points.map(([x, y, z]) => z + Math.max(Math.abs(x) / halfWidth, Math.abs(y) / halfHeight)));
+}
+
 /** A vertical exaggeration that shows flat surveys at two fifths of their width: 1, 1.5, 2, 2.5 ... 20. */
 export function suggestedExaggeration({ horizontal, vertical }) {
   if (!(vertical > 0) || !(horizontal > 0)) return 1;
@@ -57,14 +91,14 @@ export function suggestedExaggeration({ horizontal, vertical }) {
  * Texts of the box: each axis' name at the middle of one edge, its first and last number at the ends; `at` in index
  * coordinates, a little outside of the box, so that the texts of two axes do not meet at a corner.
  */
-export function axisLabels({ dims, axes }) {
+export function axisLabels({ dims, axes, names }) {
   const last = dims.map((count) => count - 1);
   const before = last.map((end) => -LABEL_MARGIN * end);
   const after = last.map((end) => (1 + LABEL_MARGIN) * end);
   return [
-    ...labelsOf('Inline', axes.inline, 0, [0, after[1], last[2]], last[0]),
-    ...labelsOf('Crossline', axes.crossline, 1, [before[0], 0, last[2]], last[1]),
-    ...labelsOf(verticalName(axes.sample.unit), axes.sample, 2, [before[0], before[1], 0], last[2]),
+    ...labelsOf(names[0], axes.inline, 0, [0, after[1], last[2]], last[0]),
+    ...labelsOf(names[1], axes.crossline, 1, [before[0], 0, last[2]], last[1]),
+    ...labelsOf(names[2], axes.sample, 2, [before[0], before[1], 0], last[2]),
   ];
 }
 

@@ -3,7 +3,8 @@
  *
  * fill       none | linear | rbf: what happens to missing traces inside the survey
  * minVoxels  bodies smaller than this are left out; 0 keeps all
- * grid       given | structural | auto: what joins the samples of neighbouring traces, depth or reflectors
+ * grid       given | structural | auto: what joins the samples of neighbouring traces, depth or reflectors; or the id of a
+ *            grid whose nodes somebody has placed
  */
 export const FILLS = Object.freeze(['none', 'linear', 'rbf']);
 export const GRIDS = Object.freeze(['given', 'structural', 'auto']);
@@ -29,7 +30,13 @@ const LEVELS = Object.freeze([
 export function requestOf({ low, high }, { fill, minVoxels, grid } = noChoices) {
   const request = { range: [low, high], missing: { method: fill }, attributes: ATTRIBUTES, levels: LEVELS };
   if (minVoxels > 0) request.bodies = { min_voxels: minVoxels };
-  return grid === 'given' ? request : { ...request, grid, attributes: [...ATTRIBUTES, 'agreement'] };
+  if (grid === 'given') return request;
+  return { ...request, grid, attributes: isPlaced(grid) ? ATTRIBUTES : [...ATTRIBUTES, 'agreement'] };
+}
+
+/** Whether a choice of a grid names one that somebody has placed. */
+export function isPlaced(grid) {
+  return !GRIDS.includes(grid);
 }
 
 /** Whether there is anything to fill in a volume. */
@@ -47,10 +54,11 @@ export function parseMinVoxels(text) {
 /** The choices that an address remembers; what it does not say, or says wrongly, is the default. */
 export function choicesFromAddress(parameters) {
   const known = (values, value) => (values.includes(value) ? value : values[0]);
+  const grid = parameters.get('grid');
   return {
     fill: known(FILLS, parameters.get('missing')),
     minVoxels: parseMinVoxels(parameters.get('min_voxels')) ?? 0,
-    grid: known(GRIDS, parameters.get('grid')),
+    grid: /^[0-9a-f]{64}$/.test(grid) ? grid : known(GRIDS, grid),
   };
 }
 

@@ -17,6 +17,8 @@ const entry = (body, more = {}) => ({
   body, voxels: 1234, volume: null, genus: 0, cavities: 0, amplitude: { mean: 0.5678, min: 0.5, max: 0.75 }, interpolated_share: 0, ...more,
 });
 
+const GRID = '0123456789abcdef'.repeat(4);
+
 describe('request', () => {
   it('asks for both attributes and leaves missing traces open', () => {
     const { levels, ...request } = requestOf({ low: 0.5, high: null });
@@ -39,10 +41,13 @@ describe('request', () => {
     const { grid, attributes } = requestOf({ low: 0, high: 1 }, { ...noChoices, grid: 'auto' });
     assert.deepEqual([grid, attributes], ['auto', ['reliability', 'body', 'agreement']]);
     assert.equal(requestOf({ low: 0, high: 1 }).grid, undefined);
+    const placed = requestOf({ low: 0, high: 1 }, { ...noChoices, grid: GRID });
+    assert.deepEqual([placed.grid, placed.attributes], [GRID, ['reliability', 'body']]);
   });
 
   it('comes back from the page address', () => {
-    for (const choices of [noChoices, { fill: 'linear', minVoxels: 0, grid: 'structural' }, { fill: 'rbf', minVoxels: 7, grid: 'auto' }]) {
+    for (const choices of [noChoices, { fill: 'linear', minVoxels: 0, grid: 'structural' }, { fill: 'rbf', minVoxels: 7, grid: 'auto' },
+      { ...noChoices, grid: GRID }]) {
       const kept = Object.entries(choicesToAddress(choices)).filter(([, value]) => value !== null);
       assert.deepEqual(choicesFromAddress(new URLSearchParams(kept)), choices);
     }

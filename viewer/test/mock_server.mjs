@@ -197,6 +197,8 @@ const CALLS = [
   ['GET', /^\/v1\/volumes\/(\w+)$/, async (mock, { response, id }) => sendJson(response, 200, mock.volume(id).document)],
   ['GET', /^\/v1\/volumes\/(\w+)\/histogram$/, async (mock, { response, id, query }) =>
     sendJson(response, 200, await histogramOf(mock.volume(id), Number(query.get('bins') ?? 256)))],
+  ['GET', /^\/v1\/volumes\/(\w+)\/grids$/, async (mock, { response, id }) =>
+    sendJson(response, 200, { grids: mock.volume(id) && [], next_page_token: null })],
   ['POST', /^\/v1\/volumes\/(\w+)\/extractions$/, async (mock, { response, request, id }) =>
     sendJson(response, 202, await mock.extract(id, JSON.parse(await readBody(request))))],
   ['GET', /^\/v1\/extractions\/(\w+)\/stream$/, async (mock, { response, id }) => sendStream(mock, response, mock.extraction(id))],

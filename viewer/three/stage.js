@@ -4,7 +4,12 @@ import {
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 
+import { distanceToSee } from '../core/placement.js';
+
 const FIELD_OF_VIEW = 38;
+/** From where the survey is seen first, and the share of the view that it fills; names and numbers lie around it. */
+const FIRST_VIEW = Object.freeze(new Vector3(-0.52, 0.62, 0.78));
+const FILLED = 0.84;
 const CLICK_PIXELS = 5;
 /** Distance of a close-up in radii of what is looked at. */
 const CLOSE_UP = 6;
@@ -17,7 +22,7 @@ export class Stage {
   #camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 1, 1e6);
   #renderer;
   #controls;
-  #radius = 1;
+  #points = [[-0.5, -0.5, -0.5], [0.5, 0.5, 0.5]];
   #scheduled = false;
   #afterDraw = [];
 
@@ -67,19 +72,25 @@ export class Stage {
     return raycaster;
   }
 
-  /** Looks at a box of these extents around the origin from south-west, from above. */
-  frame({ horizontal, vertical }) {
-    this.#radius = 0.5 * Math.hypot(horizontal, horizontal, vertical);
+  /** Looks from south-west, from above, at points around the origin of which all are to be seen; in the world's own scale. */
+  frame(points) {
+    this.#points = points;
     this.resetView();
   }
 
   resetView() {
-    const distance = (0.82 * this.#radius) / Math.sin((FIELD_OF_VIEW * Math.PI) / 360) / Math.min(1, 0.95 * this.#camera.aspect);
+    this.world.updateMatrixWorld();
+    const half = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
+    this.#controls.target.set(0, 0, 0);
+    this.#camera.position.copy(FIRST_VIEW);
+    this.#camera.lookAt(this.#controls.target);
+    const toCamera = this.#camera.quaternion.clone().invert();
+    const seen = this.#points.map((point) => this.world.localToWorld(new Vector3(...point)).applyQuaternion(toCamera).toArray());
+    const distance = distanceToSee(seen, FILLED * half * this.#camera.aspect, FILLED * half);
     this.#camera.near = distance / 200;
     this.#camera.far = distance * 20;
-    this.#camera.position.set(-0.52, 0.62, 0.78).setLength(distance);
+    this.#camera.position.copy(FIRST_VIEW).setLength(distance);
     this.#camera.updateProjectionMatrix();
-    this.#controls.target.set(0, 0, 0);
     this.#controls.update();
     this.draw();
   }

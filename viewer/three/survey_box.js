@@ -54,8 +54,8 @@ export class AxisLabels {
     this.#layer = layer;
   }
 
-  place(volume, display) {
-    this.#labels = axisLabels(volume).map(({ text, at, kind }) => {
+  place(frame, display) {
+    this.#labels = axisLabels(frame).map(({ text, at, kind }) => {
       const element = document.createElement('span');
       element.className = `axis-${kind}`;
       element.textContent = text;

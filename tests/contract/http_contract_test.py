@@ -280,6 +280,12 @@ class Grids(Refusals):
         self.assertGreater(level["volume"], 0)
         self.refused(CLIENT.send_json("POST", f"/v1/volumes/{VOLUME}/extractions", {**BODY, "grid": grid, "velocity": 2000}),
                      400, "invalid_argument", pointer="/velocity")
+        filled = {**BODY, "missing": {"method": "linear"}, "levels": [{"ratio": 1}]}
+        plain, placed = (CLIENT.get(f"/v1/extractions/{done_extraction({**filled, 'grid': one})}/manifest").json()["levels"][0]
+                         for one in ("given", grid))
+        for name in ("euler", "components", "genus", "boundary_loops", "interpolated_share"):
+            self.assertEqual(placed[name], plain[name], name)
+        self.assertGreater(placed["interpolated_share"], 0)
         xs = CLIENT.upload(raw_cube(*dims, lambda i, j, k: 25.0 * i), f"format=raw&dims={','.join(map(str, dims))}").json()["id"]
         ys = CLIENT.upload(raw_cube(*dims, lambda i, j, k: 25.0 * j), f"format=raw&dims={','.join(map(str, dims))}").json()["id"]
         times = CLIENT.send_json("POST", f"/v1/volumes/{VOLUME}/grids", {"x": xs, "y": ys}).json()

@@ -14,9 +14,11 @@ constexpr double kBytesPerTriangle = 1.6;       // encoded, of any level
 constexpr double kMoreBytesPerAttribute = 0.3;  // each: normals, bodies, reliability, value
 constexpr double kFixedMemory = 1 << 20;
 constexpr double kMemoryPerThread = 1 << 19;
-constexpr double kMemoryPerTriangle = 125;      // of M0
-constexpr double kMemoryPerPlacedTriangle = 8;  // places among the samples; nodes are a mapped file
-constexpr double kFixedSeconds = 0.15;          // of one core
+constexpr double kMemoryPerTriangle = 125;  // of M0
+constexpr double kMemoryPerPlacedTriangle =
+    24;  // world positions and places among the samples; nodes are a mapped file
+constexpr double kSecondsPerPlacedTriangle = 0.7e-6;
+constexpr double kFixedSeconds = 0.15;  // of one core
 constexpr double kSecondsPerTriangle = 2.2e-6;
 constexpr double kParallelShare = 0.85;
 constexpr double kGridMemoryPerSample = 8;  // of laying a structural grid, which is over before there are triangles
@@ -51,9 +53,10 @@ ReconstructEstimate estimate_reconstruction(const BrickedVolume& samples, const 
   const double threads = std::max(options.threads, 1);
   const double bytes_per_triangle = kBytesPerTriangle + kMoreBytesPerAttribute * attributes(options, is_filled);
   const double laid = may_be_structural(options) ? static_cast<double>(samples.shape().count()) : 0;
-  const double one_core = kFixedSeconds + kSecondsPerTriangle * triangles + kGridSecondsPerSample * laid;
   const bool is_placed = options.grid == GridChoice::curvilinear && !options.index_space;
   const double per_triangle = kMemoryPerTriangle + (is_placed ? kMemoryPerPlacedTriangle : 0);
+  const double seconds_per_triangle = kSecondsPerTriangle + (is_placed ? kSecondsPerPlacedTriangle : 0);
+  const double one_core = kFixedSeconds + seconds_per_triangle * triangles + kGridSecondsPerSample * laid;
   const double memory = std::max(per_triangle * triangles, kGridMemoryPerSample * laid);
   return {
       .triangles = static_cast<std::uint64_t>(triangles),

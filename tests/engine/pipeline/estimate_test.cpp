@@ -131,6 +131,11 @@ TEST(EstimateReconstruction, GrowsWithTheSurfaceAndItsLevels) {
   on_layers.grid = GridChoice::structural;
   EXPECT_GE(estimate_reconstruction(*sphere, on_layers).memory_bytes, 8U * 90 * 90 * 90);
   EXPECT_GT(estimate_reconstruction(*sphere, on_layers).seconds, large.seconds);
+  ReconstructOptions placed = asking({-kOpen, 40});
+  placed.grid = GridChoice::curvilinear;
+  EXPECT_GT(estimate_reconstruction(*sphere, placed).memory_bytes, large.memory_bytes);
+  placed.index_space = true;
+  EXPECT_EQ(estimate_reconstruction(*sphere, placed).memory_bytes, large.memory_bytes);
   const auto nothing = estimate_reconstruction(*sphere, asking({1000, kOpen}));
   EXPECT_EQ(nothing.triangles, 0U);
 }

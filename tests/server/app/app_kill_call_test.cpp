@@ -3,6 +3,9 @@
 // end.
 #include <filesystem>
 #include <functional>
+#include <span>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -116,6 +119,60 @@ TEST_F(AppKillCallTest, ARemoval) {
         return service.volumes.collect_garbage() && is_absent(service, volume) && blobs(service) == 0;
       },
       1, 20);
+}
+
+/// The ball's nodes where its samples are, but deeper.
+Result<AddedGrid> add_grid(Service& service, const std::string& volume) {
+  const auto stored = service.volumes.open(volume);
+  if (!stored) return stored.error();
+  const GridShape shape = (*stored)->summary.shape;
+  std::vector<float> numbers;
+  for (int i = 0; i < shape.inlines; ++i)
+    for (int j = 0; j < shape.crosslines; ++j)
+      for (int k = 0; k < shape.samples; ++k) numbers.insert(numbers.end(), {1.0f * i, 1.0f * j, 100.0f + k});
+  NoProgress progress;
+  return service.volumes.grids().add((*stored)->summary, *memory_source(std::as_bytes(std::span(numbers))), {},
+                                     [] { return Result<void>(); }, progress);
+}
+
+std::size_t whole_grids(Service& service, const std::string& volume) {
+  const Json page = service.volumes.grids().list(volume, 10, "").value();
+  const auto summary = (*service.volumes.open(volume))->summary;
+  std::size_t whole = 0;
+  for (const Json& grid : page.at("grids")) {
+    if (service.volumes.grids().open(summary, grid.at("id").get<std::string>())) ++whole;
+  }
+  return whole == page.at("grids").size() ? whole : 99;
+}
+
+TEST_F(AppKillCallTest, AnUploadOfAGrid) {
+  kill_at_each_call(
+      upload, [](Service& service, const std::string& volume) { return add_grid(service, volume).has_value(); },
+      [](Service& service, const std::string& volume) {
+        if (!is_whole(service, volume) || whole_grids(service, volume) > 1) return false;
+        if (!service.volumes.collect_garbage()) return false;
+        if (blobs(service) != 3 + 2 * whole_grids(service, volume)) return false;
+        return add_grid(service, volume) && whole_grids(service, volume) == 1 && blobs(service) == 5;
+      },
+      1, 10);
+}
+
+TEST_F(AppKillCallTest, ARemovalOfAGrid) {
+  const auto upload_both = [](Service& service, const std::string&) {
+    return add_grid(service, service.add_ball()).has_value();
+  };
+  const auto remove = [](Service& service, const std::string& volume) {
+    const auto ids = service.volumes.grids().list(volume, 10, "");
+    return ids && service.volumes.grids().remove(volume, ids->at("grids").at(0).at("id").get<std::string>());
+  };
+  kill_at_each_call(
+      upload_both, remove,
+      [&](Service& service, const std::string& volume) {
+        if (!is_whole(service, volume) || whole_grids(service, volume) > 1) return false;
+        if (whole_grids(service, volume) == 1 && !remove(service, volume)) return false;
+        return service.volumes.collect_garbage() && whole_grids(service, volume) == 0 && blobs(service) == 3;
+      },
+      1, 5);
 }
 
 TEST_F(AppKillCallTest, AnExtraction) {

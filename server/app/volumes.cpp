@@ -30,7 +30,10 @@ Json public_document(const Json& volume, const Json& sidecar) {
   for (const auto& [name, value] : volume.items()) {
     if (!document.contains(name) && name != kUpload) document[name] = value;
   }
-  document["links"] = {{"self", self}, {"histogram", self + "/histogram"}, {"extractions", self + "/extractions"}};
+  document["links"] = {{"self", self},
+                       {"histogram", self + "/histogram"},
+                       {"grids", self + "/grids"},
+                       {"extractions", self + "/extractions"}};
   return document;
 }
 

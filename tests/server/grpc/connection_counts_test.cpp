@@ -132,7 +132,6 @@ class ConnectionCountsTest : public test::DoorTest {
 };
 
 TEST_F(ConnectionCountsTest, CountsTheCallsOfEachConnectionUntilTheyAreOver) {
-  test::Gate gate_of_work;
   start({}, test::gated_after(4, gate_of_work));
   v1::StreamLodsRequest request;
   request.set_id(create(upload_ball()).id());

@@ -65,6 +65,7 @@ class DoorTest : public testing::Test {
   std::unique_ptr<Service> service;
   MemoryBudget memory{std::uint64_t{1} << 30};
   OpenGate gate;
+  Gate gate_of_work;  ///< for gated_after(): outlives what waits at it
   Slots uploads{4};
   std::unique_ptr<Door> door;
   std::unique_ptr<v1::VolumeService::Stub> volumes;

@@ -92,7 +92,6 @@ TEST_F(DoorTest, TooManyCallsForItsHandlersAreUnavailable) {
 }
 
 TEST_F(DoorTest, DrainsWhatRunsAndTakesNothingNew) {
-  test::Gate gate_of_work;
   start({}, test::gated_after(4, gate_of_work));
   v1::StreamLodsRequest request;
   request.set_id(create(upload_ball()).id());
@@ -113,7 +112,6 @@ TEST_F(DoorTest, DrainsWhatRunsAndTakesNothingNew) {
 }
 
 TEST_F(DoorTest, WhatRunsLongerThanTheGraceIsCancelled) {
-  test::Gate gate_of_work;
   start({}, test::gated_after(4, gate_of_work));
   v1::StreamLodsRequest request;
   request.set_id(create(upload_ball()).id());

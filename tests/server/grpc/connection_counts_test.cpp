@@ -162,25 +162,5 @@ TEST_F(ConnectionCountsTest, AClientWhoTakesBackWhatItBeginsIsHungUpOn) {
   expect_served(other);
 }
 
-/// The head of a call that is never complete.
-std::string endless_head() {
-  std::string piece;
-  while (piece.size() < 12'000) piece.append({0, 1}).append("x").append({100}).append(100, 'y');
-  return frame(9, 0, 1, piece);
-}
-
-TEST_F(ConnectionCountsTest, AClientWhoseHeadNeverEndsIsHungUpOn) {
-  start();
-  const std::string other = upload_ball();
-  const Descriptor flood = connect_to(door->port());
-  ASSERT_TRUE(send_all(flood, greeting() + frame(1, 0, 1, "")));
-  const std::string piece = endless_head();
-  std::size_t sent = 0;
-  constexpr std::size_t kEnough = std::size_t{1} << 30;
-  while (sent < kEnough && send_all(flood, piece)) sent += piece.size();
-  EXPECT_LT(sent, kEnough);
-  expect_served(other);
-}
-
 }  // namespace
 }  // namespace geosis::server::rpc

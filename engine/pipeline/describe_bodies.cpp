@@ -58,6 +58,7 @@ Result<PlacedSurface> place_surface(const ReconstructInput& input, const Reconst
 
 Result<std::vector<DescribedBody>> describe_bodies(const ReconstructInput& input, const ReconstructOptions& options,
                                                    Progress& progress) {
+  if (options.preview) return std::vector<DescribedBody>();
   auto grid = grid_stage(input, options, progress);
   if (!grid) return std::move(grid).error();
   const std::optional<LayerMap> layers = layer_map(*grid, input.samples.shape(), options);

@@ -21,6 +21,7 @@ struct DescribedBody {
 ///
 /// A function of its own: it reads all samples in the range, which the surface does not need.
 ///
+/// returns  nothing for a preview, whose bodies are not those of the samples.
 /// errors   those of reconstruct.
 /// cost     extraction and half as much again, and one read of the bricks that hold samples in the range.
 Result<std::vector<DescribedBody>> describe_bodies(const ReconstructInput& input, const ReconstructOptions& options,

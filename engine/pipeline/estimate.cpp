@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/isosurface/estimate_triangles.h"
+#include "engine/pipeline/preview.h"
 
 namespace geosis {
 namespace {
@@ -48,7 +49,8 @@ ReconstructEstimate estimate_reconstruction(const BrickedVolume& samples, const 
   extract.mode = options.mode;
   extract.cap = options.cap;
   extract.region = options.region.value_or(whole(samples.shape()));
-  const double triangles = estimate_triangles(samples, options.range, extract);
+  double triangles = estimate_triangles(samples, options.range, extract);
+  if (options.preview) triangles /= thinning(preview_step(extract.region, triangles));
   const bool is_filled = options.fill.method != FillMethod::none && has_missing(samples);
   const double threads = std::max(options.threads, 1);
   const double bytes_per_triangle = kBytesPerTriangle + kMoreBytesPerAttribute * attributes(options, is_filled);

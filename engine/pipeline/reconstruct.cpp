@@ -14,6 +14,7 @@
 #include "engine/pipeline/grid_stage.h"
 #include "engine/pipeline/level_attributes.h"
 #include "engine/pipeline/output_space.h"
+#include "engine/pipeline/preview.h"
 #include "engine/pipeline/stages.h"
 
 namespace geosis {
@@ -246,6 +247,7 @@ Result<Reconstruction> run_stages(const Run& run) {
 Result<Reconstruction> reconstruct(const ReconstructInput& input, const ReconstructOptions& options, Progress& progress,
                                    StageTimings* timings, const LevelSink& on_level) {
   if (options.levels.empty()) return Error{ErrorCode::invalid_argument, "no levels asked for"};
+  if (options.preview) return reconstruct_preview(input, options, progress, timings, on_level);
   if (auto checked = check_nodes(input, options); !checked) return std::move(checked).error();
   const bool is_curved = is_curved_space(input.grid_geometry(), options);
   AffineGeometry space;  // a grid that is not affine has its own, once M0 is there

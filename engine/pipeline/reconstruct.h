@@ -78,7 +78,8 @@ struct ReconstructOptions {
   std::optional<int> position_bits = std::nullopt;             ///< unset = chosen so that topology survives
   std::optional<int> speed = std::nullopt;                     ///< unset = 7
   bool normals = false;                                        ///< at the vertices, from the field's gradient
-  int threads = 1;  ///< of each stage; levels are encoded beside their simplification by spare threads
+  bool preview = false;  ///< of every few samples, without a promise of topology: preview.h
+  int threads = 1;       ///< of each stage; levels are encoded beside their simplification by spare threads
 };
 
 /// Two-sided distance between surfaces in the units of a space.
@@ -155,6 +156,8 @@ struct ReconstructInput {
 /// On a curvilinear grid the surface is extracted in index space too and its topology decided there; then its vertices
 /// go where the nodes say. Bodies too small in cells are left out before, the largest are chosen by their volume in the
 /// world. docs/grids.md.
+///
+/// A preview is a reconstruction of every few samples.
 ///
 /// errors     those of lay_structural_grid, fill_missing, extract_body, build_lods and encode_level.  invalid_argument:
 ///            position bits that cannot hold the volume, `value` or a curvilinear grid without what it needs, or with

@@ -74,6 +74,9 @@ bool Extractions::are_bodies_made(const std::string& id) {
 Result<std::shared_ptr<Job>> Extractions::begin_bodies(const std::string& id) {
   const auto extraction = find_done(id);
   if (!extraction) return extraction.error();
+  if ((*extraction)->identity().request.value("preview", false)) {
+    return Error{ErrorCode::unsupported, "extraction " + id + ": it is a preview, whose bodies are not described"};
+  }
   return begin((*extraction)->identity(), kBodies,
                [this, extraction = *extraction](Job& running) { return make_bodies(extraction->identity(), running); });
 }

@@ -91,7 +91,7 @@ Result<Json> Extractions::estimate(const std::string& volume, const Json& reques
 
 JobDemand Extractions::demand_of(const BrickedVolume& samples, const ReconstructOptions& options,
                                  Priority priority) const {
-  return {.priority = priority,
+  return {.priority = options.preview ? Priority::preview : priority,
           .memory_bytes = memory_to_reserve(estimate_reconstruction(samples, options)),
           .tenant = tenant_,
           .what = "extraction that is not kept"};

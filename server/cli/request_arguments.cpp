@@ -79,6 +79,8 @@ RequestArguments::RequestArguments(CLI::App& command) {
   command.add_option("--mode", mode_, "exact (default) or sampled: g = (f - LOW)(HIGH - f) on the samples")
       ->type_name("MODE");
   command.add_flag("--no-cap", no_cap_, "leave the body open where it leaves the survey");
+  command.add_flag("--preview", preview_,
+                   "a coarse look at every few samples, one level, without a promise of topology");
   command.add_option("--region", region_, "nodes to look at, from 0, ends included")->type_name("I0:I1,J0:J1,K0:K1");
   command.add_option("--grid", grid_, "connect samples as given (default), along reflectors (structural), or auto")
       ->type_name("GRID");
@@ -136,6 +138,7 @@ Result<void> RequestArguments::write_shape(Json& document) const {
   if (!grid_.empty()) document["grid"] = grid_;
   if (!space_.empty()) document["space"] = space_;
   if (no_cap_) document["cap"] = false;
+  if (preview_) document["preview"] = true;
   return {};
 }
 

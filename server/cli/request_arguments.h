@@ -32,7 +32,7 @@ class RequestArguments {
   std::pair<std::string, std::string> range_;
   std::string request_path_;
   std::string grid_, mode_, region_, space_, velocity_;
-  bool no_cap_ = false;
+  bool no_cap_ = false, preview_ = false;
   std::string missing_, kernel_, steer_, max_distance_;
   std::string min_voxels_, largest_;
   std::vector<std::string> seeds_;

@@ -13,7 +13,7 @@ namespace {
 /// The levels' positions to the requested space, row-major.
 std::array<double, 16> output_transform(const VolumeSummary& volume, const ReconstructOptions& options,
                                         const Reconstruction& reconstruction) {
-  if (options.grid == GridChoice::curvilinear) return reconstruction.transform;
+  if (options.grid == GridChoice::curvilinear || options.preview) return reconstruction.transform;
   return *output_space(volume.geometry, options)->affine();  // the geometry is affine: this cannot fail
 }
 
@@ -116,7 +116,7 @@ Json level_document(const ReconstructedLevel& level, std::size_t number, const V
           {"volume_drift", number_or_null(level.volume_drift)},
           {"interpolated_share", number_or_null(level.interpolated_share)},
           {"dropped_components", level.lod.dropped_components},
-          {"preview", false}};
+          {"preview", options.preview}};
 }
 
 }  // namespace

@@ -69,13 +69,6 @@ int ObjectReader::choice(const char* name, std::initializer_list<const char*> ch
   return 0;
 }
 
-void ObjectReader::only(const char* name, const Json& supported) {
-  const Json* member = find(name);
-  if (!member || canonical_text(*member) == canonical_text(supported)) return;
-  note(ErrorCode::unsupported,
-       pointer_to(name) + ": " + shown(*member) + "; this version supports only " + shown(supported));
-}
-
 void ObjectReader::refuse_unknown() {
   if (!value_.is_object()) return;
   for (const auto& [name, member] : value_.items()) {

@@ -33,8 +33,6 @@ class ObjectReader {
   std::optional<std::int64_t> whole_number(const char* name, std::int64_t min, std::int64_t max);
   /// Position of the member's string among the choices; 0 when absent.
   int choice(const char* name, std::initializer_list<const char*> choices);
-  /// The member may be left out or have this value: any other is part of the contract but not supported yet.
-  void only(const char* name, const Json& supported);
   /// To be called last.
   void refuse_unknown();
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "engine/pipeline/preview.h"
 #include "server/documents/grid_report.h"
 #include "server/documents/ids.h"
 #include "server/documents/object_reader.h"
@@ -20,30 +21,6 @@ constexpr std::int64_t kLastNode = std::numeric_limits<std::int32_t>::max() - 1;
 constexpr double kFastest = 20'000;  // m/s, beyond any rock
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr const char* kAxisNames[3] = {"inline", "crossline", "sample"};
-
-// What the contract defines and this version has only the default of. One place for reading and for the canonical form.
-struct FixedField {
-  const char* name;
-  Json supported;
-};
-
-const std::vector<FixedField>& fixed_fields() {
-  static const std::vector<FixedField> fields = {
-      {"preview", false},
-  };
-  return fields;
-}
-
-void read_fixed(ObjectReader& reader, const FixedField& field, std::optional<Error>& problem) {
-  const Json* member = reader.find(field.name);
-  if (!member || !field.supported.is_object()) {
-    reader.only(field.name, field.supported);
-    return;
-  }
-  ObjectReader inner(*member, reader.pointer_to(field.name), problem);
-  for (const auto& [name, supported] : field.supported.items()) inner.only(name.c_str(), supported);
-  inner.refuse_unknown();
-}
 
 /// The end as float32; nullopt when it is not a number or null. -0 becomes 0, so that equal ranges have one text.
 std::optional<float> range_end(const Json& value, float open_end) {
@@ -164,33 +141,34 @@ Result<ReconstructOptions> parse_request(const Json& document) {
   options.velocity = read_velocity(request);
   read_attributes(request, options);
   read_codec(request, options, problem);
-  for (const auto& field : fixed_fields()) read_fixed(request, field, problem);
+  const bool preview = request.boolean("preview", false);
+  if (preview && options.grid_id) {
+    request.refuse(request.pointer_to("preview"), true, "false on a placed grid, which previews know nothing of");
+  }
   request.refuse_unknown();
   if (problem) return *std::move(problem);
-  return options;
+  return preview ? preview_options(std::move(options)) : options;
 }
 
 Json request_document(const ReconstructOptions& options, GridShape shape) {
-  Json request = {
-      {"range", {range_end_or_null(options.range.low), range_end_or_null(options.range.high)}},
-      {"mode", options.mode == BodyMode::exact ? "exact" : "sampled"},
-      {"missing", missing_document(options.fill)},
-      {"grid", options.grid_id.value_or(name_of(options.grid))},
-      {"space", options.index_space ? "index" : "world"},
-      {"velocity", options.index_space ? Json(nullptr) : or_null(options.velocity)},  // index space has no times
-      {"cap", options.cap},
-      {"region", region_document(options.region.value_or(whole(shape)))},
-      {"bodies", bodies_document(options.bodies)},
-      {"levels", levels_document(options.levels)},
-      {"simplify", simplify_document(options)},
-      {"attributes", attributes_document(options.attributes)},
-      {"attribute_volume", or_null(options.attribute_volume)},
-      {"codec",
-       {{"position_bits", or_null(options.position_bits)},
-        {"normals", options.normals},
-        {"speed", or_null(options.speed)}}}};
-  for (const auto& field : fixed_fields()) request[field.name] = field.supported;
-  return request;
+  return {{"range", {range_end_or_null(options.range.low), range_end_or_null(options.range.high)}},
+          {"mode", options.mode == BodyMode::exact ? "exact" : "sampled"},
+          {"missing", missing_document(options.fill)},
+          {"grid", options.grid_id.value_or(name_of(options.grid))},
+          {"space", options.index_space ? "index" : "world"},
+          {"velocity", options.index_space ? Json(nullptr) : or_null(options.velocity)},  // index space has no times
+          {"cap", options.cap},
+          {"region", region_document(options.region.value_or(whole(shape)))},
+          {"bodies", bodies_document(options.bodies)},
+          {"levels", levels_document(options.levels)},
+          {"simplify", simplify_document(options)},
+          {"attributes", attributes_document(options.attributes)},
+          {"attribute_volume", or_null(options.attribute_volume)},
+          {"codec",
+           {{"position_bits", or_null(options.position_bits)},
+            {"normals", options.normals},
+            {"speed", or_null(options.speed)}}},
+          {"preview", options.preview}};
 }
 
 Result<Json> range_from_text(std::string_view low, std::string_view high) {

@@ -160,6 +160,14 @@ def extraction(door):
     return levels, without(done, {"created_at", "timings", "stage"})
 
 
+def preview(door):
+    created = door.create(survey_of(door), {"range": [0.5, None], "preview": True, "attributes": ["body"]})
+    parts, manifest = door.stream(created["id"])
+    assert [part[3] for part in parts] == [True], parts
+    assert refusal(door.bodies, created["id"]).code == "unsupported"
+    return created["id"], parts, manifest
+
+
 def watch_again(door):
     created = door.create(ball_of(door), {"range": [0, None]})
     door.watch(created["id"])
@@ -329,7 +337,7 @@ def refused_requests(door):
               {"range": [0, None], "attributes": ["value"]}, {"range": [0, None], "attribute_volume": ABSENT},
               {"range": [0, None], "attributes": ["value"], "attribute_volume": ABSENT},
               {"range": [0, None], "velocity": -3}, {"range": [0, None], "velocity": 2000}, {"range": [0, None], "grid": "round"},
-              {"range": [0, None], "preview": True}]
+              {"range": [0, None], "grid": ABSENT, "preview": True}]
     found = [refusal(door.create, volume, request) for request in wanted]
     return [(refused.code, refused.pointer, refused.detail) for refused in found]
 
@@ -378,7 +386,7 @@ def remove(door):
 
 
 SCENARIOS = [upload, upload_of_raw_samples, upload_for_later, upload_for_later_that_fails, list_of_volumes, histogram,
-             whole_request, extraction, watch_again, stream, structural_grid, grids,
+             whole_request, extraction, watch_again, stream, preview, structural_grid, grids,
              grid_from_volumes, stream_on_a_grid, results_go_with_their_grid, refused_grids, nothing_in_range, bodies, one_shot,
              one_shot_leaves_nothing,
              cancel, purge, two_interests, refused_requests, refused_numbers, unknown_ids, refused_files, refused_one_shots,

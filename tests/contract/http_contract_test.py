@@ -402,11 +402,21 @@ class Extractions(Refusals):
                                          ({}, 400, "/range"),
                                          ({"range": [0, "a"]}, 400, "/range/1"),
                                          ({"range": [0, 1], "grid": "bent"}, 400, "/grid"),
-                                         ({"range": [0, 1], "preview": True}, 422, "/preview"),
+                                         ({"range": [0, 1], "preview": 1}, 400, "/preview"),
+                                         ({"range": [0, 1], "preview": True, "grid": "0" * 64}, 400, "/preview"),
                                          ({"range": [0, 1], "levels": []}, 400, "/levels")):
             self.refused(self.post(request), status, pointer=pointer)
         self.refused(self.post("{nonsense"), 400)
         self.refused(self.post({"range": [0, 1], "region": {"inline": [0, 900], "crossline": [0, 5], "sample": [0, 5]}}), 400)
+
+    def test_previews_are_results_of_their_own(self):
+        preview = done_extraction({**BODY, "preview": True})
+        self.assertEqual(preview, done_extraction({**BODY, "preview": True, "levels": [{"ratio": 0.5}], "grid": "auto"}))
+        self.assertNotEqual(preview, done_extraction(BODY))
+        manifest = CLIENT.get(f"/v1/extractions/{preview}/manifest").json()
+        self.assertEqual([level["preview"] for level in manifest["levels"]], [True])
+        self.assertIn(b"X-Geosis-Preview: true", CLIENT.get(f"/v1/extractions/{preview}/stream").body)
+        self.refused(CLIENT.get(f"/v1/extractions/{preview}/bodies"), 422, "unsupported")
 
     def test_grids_that_follow_the_reflectors(self):
         manifests = {}

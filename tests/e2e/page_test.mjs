@@ -88,6 +88,25 @@ describe('the page', () => {
     assert.deepEqual(page.mistakes, []);
   });
 
+  it('shows a preview while a handle is dragged, and the body when it is let go', async () => {
+    const isPreview = (request) => request.method() === 'POST' && /\/extractions$/.test(request.url()) && request.postDataJSON().preview === true;
+    const { x, y, width, height } = await page.locator('#low-handle').boundingBox();
+    await page.mouse.move(x + width / 2, y + height / 2);
+    await page.mouse.down();
+    const changed = await shareChangedBy(page, async () => {
+      const asked = page.waitForRequest(isPreview, { timeout: PATIENCE_MS });
+      const streamed = page.waitForResponse((response) => /\/stream$/.test(response.url()), { timeout: PATIENCE_MS });
+      await page.mouse.move(x + width / 2 - 30, y + height / 2, { steps: 3 });
+      await asked;
+      await streamed;
+      await page.waitForTimeout(500);
+    });
+    assert.ok(changed > 1e-3, `the preview does not show: ${changed}`);
+    await reconstructBy(page, () => page.mouse.up());
+    assert.equal(await levelRows().count(), LEVELS);
+    assert.deepEqual(page.mistakes, []);
+  });
+
   it('keeps the range in the address, so that a link shows the same body', async () => {
     await page.fill('#low', '0.6');
     await page.click('#reconstruct');

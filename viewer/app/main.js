@@ -8,7 +8,7 @@ import {
 } from '../core/placement.js';
 import { parseEnd, rangeFromText, rangeMistake, rangeToText } from '../core/range.js';
 import {
-  choicesFromAddress, choicesToAddress, hasMissing, isPlaced, noChoices, parseMinVoxels, requestOf,
+  choicesFromAddress, choicesToAddress, hasMissing, isPlaced, noChoices, parseMinVoxels, previewOf, requestOf,
 } from '../core/request.js';
 import { PartDecoder } from '../decode/decoder.js';
 import { Stage } from '../three/stage.js';
@@ -16,6 +16,7 @@ import { AxisLabels, SurveyBox } from '../three/survey_box.js';
 import { Appearance } from './appearance.js';
 import { HistogramView } from './histogram_view.js';
 import { showLevels } from './levels_table.js';
+import { Preview } from './preview.js';
 import { Reconstruction } from './reconstruction.js';
 import { listenToSave } from './save.js';
 import { SignIn } from './sign_in.js';
@@ -43,7 +44,10 @@ let choices = noChoices;
 const opening = new Latest();
 
 const histogramView = new HistogramView(element('histogram'), {
-  onMove: (moved) => showRange(moved),
+  onMove: (moved) => {
+    showRange(moved);
+    showPreview();
+  },
   onRelease: (released) => {
     showRange(released);
     reconstructSoon();
@@ -72,8 +76,9 @@ listenToSave(element('save'), async (format) => ({
 const decoder = new PartDecoder(new Worker('decode_worker.js'));
 const reconstruction = new Reconstruction(api, decoder, {
   onState: showState,
-  onLevel: (parts) => appearance.draw(parts),
+  onLevel: (parts) => preview.isActive || appearance.draw(parts),
 });
+const preview = new Preview(api, decoder, { onParts: (parts) => appearance.draw(parts) });
 const reconstructSoon = debounced(() => reconstruct({ onlyIfNew: true }), DEBOUNCE_MS);
 /** What was asked for last, as text. */
 let asked = '';
@@ -84,13 +89,20 @@ function reconstruct({ onlyIfNew = false } = {}) {
   if (!volume || mistakeInRequest()) return;
   const request = requestOf(range, wantedChoices());
   const asText = JSON.stringify([volume.id, request]);
-  if (onlyIfNew && asText === asked) return;
+  if (onlyIfNew && asText === asked && !preview.isActive) return;
+  preview.stop();
   asked = asText;
   rememberRequest();
   const placed = grids.find(({ id }) => id === choices.grid);
   const wanted = placed ? gridFrame(placed, volume) : surveyFrame(volume);
   if (JSON.stringify(wanted) !== JSON.stringify(frame)) showFrame(wanted);
   reconstruction.start(volume.id, request, frame);
+}
+
+/** A coarse look at what the range would give, while it is still being chosen. */
+function showPreview() {
+  const request = volume && !mistakeInRequest() ? previewOf(range, wantedChoices()) : null;
+  if (request) preview.show(volume.id, request, frame);
 }
 
 /** The choices as far as this volume has them. */

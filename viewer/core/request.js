@@ -34,6 +34,13 @@ export function requestOf({ low, high }, { fill, minVoxels, grid } = noChoices) 
   return { ...request, grid, attributes: isPlaced(grid) ? ATTRIBUTES : [...ATTRIBUTES, 'agreement'] };
 }
 
+/** The request for a coarse look at the same body; null where there is none. */
+export function previewOf({ low, high }, { minVoxels, grid } = noChoices) {
+  if (isPlaced(grid)) return null;
+  const request = { range: [low, high], attributes: ['body'], preview: true };
+  return minVoxels > 0 ? { ...request, bodies: { min_voxels: minVoxels } } : request;
+}
+
 /** Whether a choice of a grid names one that somebody has placed. */
 export function isPlaced(grid) {
   return !GRIDS.includes(grid);

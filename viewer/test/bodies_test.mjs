@@ -10,7 +10,7 @@ import {
 } from '../core/extraction_state.js';
 import { formatAmplitude, formatVolume } from '../core/format.js';
 import { bodyLast, boundsOfBody, enlarged, longestSide } from '../core/mesh.js';
-import { choicesFromAddress, choicesToAddress, hasMissing, noChoices, parseMinVoxels, requestOf } from '../core/request.js';
+import { choicesFromAddress, choicesToAddress, hasMissing, noChoices, parseMinVoxels, previewOf, requestOf } from '../core/request.js';
 import { colourDifference, luminanceOf, VISIONS } from './colour_vision.mjs';
 
 const entry = (body, more = {}) => ({
@@ -43,6 +43,12 @@ describe('request', () => {
     assert.equal(requestOf({ low: 0, high: 1 }).grid, undefined);
     const placed = requestOf({ low: 0, high: 1 }, { ...noChoices, grid: GRID });
     assert.deepEqual([placed.grid, placed.attributes], [GRID, ['reliability', 'body']]);
+  });
+
+  it('has previews, but for placed grids', () => {
+    assert.deepEqual(previewOf({ low: 0.5, high: null }), { range: [0.5, null], attributes: ['body'], preview: true });
+    assert.deepEqual(previewOf({ low: 0, high: 1 }, { ...noChoices, minVoxels: 9 }).bodies, { min_voxels: 9 });
+    assert.equal(previewOf({ low: 0, high: 1 }, { ...noChoices, grid: GRID }), null);
   });
 
   it('comes back from the page address', () => {

@@ -123,10 +123,19 @@ TEST(ParseRequest, RefusesRegionsThatAreNoBox) {
                  "request /region/sample: null; expected [first, last], two node numbers from 0, first < last");
 }
 
-TEST(ParseRequest, NamesWhatThisVersionDoesNotSupport) {
-  const auto unsupported = ErrorCode::unsupported;
-  expect_refused(R"({"range": [0, 1], "preview": true})", unsupported,
-                 "request /preview: true; this version supports only false");
+TEST(ParseRequest, MakesOneRequestOfEqualPreviews) {
+  const std::string preview = canonical(R"({"range": [0, 1], "preview": true})");
+  EXPECT_NE(preview, canonical(R"({"range": [0, 1]})"));
+  EXPECT_NE(preview.find(R"("preview":true)"), std::string::npos) << preview;
+  EXPECT_NE(preview.find(R"("ratio":1}],)"), std::string::npos) << preview;
+  EXPECT_EQ(preview, canonical(R"({"range": [0, 1], "preview": true, "grid": "auto", "levels": [{"ratio": 0.5}],
+                                   "missing": {"method": "linear"}, "attributes": []})"));
+}
+
+TEST(ParseRequest, RefusesPreviewsOfPlacedGrids) {
+  const std::string text = R"({"range": [0, 1], "preview": true, "grid": ")" + std::string(64, 'a') + "\"}";
+  expect_refused(text.c_str(), ErrorCode::invalid_argument,
+                 "request /preview: true; expected false on a placed grid, which previews know nothing of");
 }
 
 TEST(ParseRequest, ShortensLongValuesInMessages) {

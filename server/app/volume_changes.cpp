@@ -73,7 +73,10 @@ Result<void> Volumes::collect_garbage() {
     if (auto done = collect_garbage_of(id); !done) return done;
     const auto is_there = store_.exists(key(id, kVolume));
     if (!is_there) return is_there.error();
-    if (auto done = *is_there ? grids_.collect_garbage_of(id) : grids_.remove_all(id); !done) return done;
+    const auto uploads = store_.children(key(id, kUploads));
+    if (!uploads) return uploads.error();
+    const bool is_gone = !*is_there && uploads->empty();  // and not just being replaced because it is damaged
+    if (auto done = is_gone ? grids_.remove_all(id) : grids_.collect_garbage_of(id); !done) return done;
   }
   return {};
 }

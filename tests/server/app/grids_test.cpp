@@ -10,8 +10,10 @@
 
 #include "engine/volume/brick_file.h"
 #include "server/app/volumes.h"
+#include "server/store/dir_store.h"
 #include "server/store/memory_store.h"
 #include "tests/server/app/service_fixture.h"
+#include "tests/server/store/temporary_folder.h"
 
 namespace geosis::server {
 namespace {
@@ -133,6 +135,24 @@ TEST_F(GridsTest, FilesOfProcessesThatAreGoneAreRemovedUnlessTheyCount) {
   EXPECT_EQ(stored().size(), 3u);
   ASSERT_TRUE(grids.collect_garbage_of(volume.id));
   EXPECT_EQ(stored().size(), store->may_be_running("process-gone") ? 3u : 2u);
+}
+
+// A damaged volume that is uploaded again has no volume.json for a moment.
+TEST(GridsOfVolumes, StayWhileAnotherServerReplacesTheVolume) {
+  const geosis::test::TemporaryFolder folder;
+  const auto store = std::move(*open_dir_store(folder.path()));
+  auto other = std::move(*open_dir_store(folder.path()));
+  const std::string id(64, 'a');
+  const BlobKey grid = "default/volumes/" + id + "/grids/" + std::string(64, 'b') + "/grid.json";
+  const BlobKey upload = "default/volumes/" + id + "/data/" + other->process_name() + ".0/bricks";
+  ASSERT_TRUE(store->put(grid, std::vector<std::byte>(10)));
+  ASSERT_TRUE(other->put(upload, std::vector<std::byte>(10)));
+  Volumes volumes(*store, "default", 1);
+  ASSERT_TRUE(volumes.collect_garbage());
+  EXPECT_TRUE(store->exists(grid).value());
+  ASSERT_TRUE(other->remove(upload));
+  ASSERT_TRUE(volumes.collect_garbage());
+  EXPECT_FALSE(store->exists(grid).value());
 }
 
 TEST_F(GridsTest, TakeCoordinatesFromVolumes) {

@@ -6,16 +6,12 @@
 
 #include "server/app/arriving_file.h"
 #include "server/documents/node_grid_document.h"
+#include "server/documents/request_check.h"
 
 namespace geosis::server {
 namespace {
 
 using OpenCoordinates = std::array<std::shared_ptr<const StoredVolume>, 3>;
-
-std::string dims_text(GridShape shape) {
-  return std::to_string(shape.inlines) + " x " + std::to_string(shape.crosslines) + " x " +
-         std::to_string(shape.samples);
-}
 
 /// An error of one coordinate, with the pointer to it.
 Error about(std::size_t axis, const Error& error) {
@@ -41,10 +37,8 @@ Result<OpenCoordinates> open_coordinates(const Services& services, GridShape sha
     if (!ids.of[axis]) continue;
     auto volume = services.volumes.open(*ids.of[axis]);
     if (!volume) return about(axis, volume.error());
-    if ((*volume)->summary.shape != shape) {
-      return about(axis, {ErrorCode::invalid_argument, "a volume of " + dims_text((*volume)->summary.shape) +
-                                                           " nodes; the volume itself has " + dims_text(shape)});
-    }
+    const std::string pointer = std::string("/") + kCoordinateNames[axis];
+    if (auto fits = check_same_nodes(pointer, (*volume)->summary.shape, shape); !fits) return std::move(fits).error();
     opened[axis] = *std::move(volume);
   }
   return opened;

@@ -54,10 +54,13 @@ Result<void> check_placed_grid(const ReconstructOptions& options, const Json& gr
   return refusal("/velocity", "given, but the grid has depths already");
 }
 
+Result<void> check_same_nodes(const std::string& pointer, GridShape other, GridShape volume) {
+  if (other == volume) return {};
+  return refusal(pointer, "a volume of " + dims_text(other) + " nodes; the volume itself has " + dims_text(volume));
+}
+
 Result<void> check_attribute_volume(const VolumeSummary& attribute_volume, const VolumeSummary& volume) {
-  if (attribute_volume.shape == volume.shape) return {};
-  return refusal("/attribute_volume", "a volume of " + dims_text(attribute_volume.shape) +
-                                          " nodes; the volume itself has " + dims_text(volume.shape));
+  return check_same_nodes("/attribute_volume", attribute_volume.shape, volume.shape);
 }
 
 }  // namespace geosis::server

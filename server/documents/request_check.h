@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "engine/base/result.h"
 #include "engine/pipeline/reconstruct.h"
 #include "server/documents/volume_document.h"
@@ -17,7 +19,13 @@ Result<void> check_request(const ReconstructOptions& options, const VolumeSummar
 /// errors   invalid_argument: a velocity where the grid has depths already.
 Result<void> check_placed_grid(const ReconstructOptions& options, const Json& grid);
 
-/// The same for the volume that the attribute "value" is of: it must have as many nodes along each axis.
+/// The same for another volume that the request names: it must have as many nodes along each axis.
+///
+/// pointer   to where it is named, "/z".
+/// errors    invalid_argument.
+Result<void> check_same_nodes(const std::string& pointer, GridShape other, GridShape volume);
+
+/// The same for the volume that the attribute "value" is of.
 Result<void> check_attribute_volume(const VolumeSummary& attribute_volume, const VolumeSummary& volume);
 
 }  // namespace geosis::server

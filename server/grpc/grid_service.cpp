@@ -5,6 +5,7 @@
 
 #include "server/app/grid_calls.h"
 #include "server/app/volume_calls.h"
+#include "server/grpc/bounded.h"
 #include "server/grpc/grid_upload_call.h"
 #include "server/grpc/message_codec.h"
 #include "server/grpc/unary_call.h"
@@ -38,14 +39,10 @@ grpc::ServerUnaryReactor* GridServiceDoor::ListGrids(grpc::CallbackServerContext
                                                      const v1::ListGridsRequest* request,
                                                      v1::ListGridsResponse* response) {
   const auto list = [=](Call& call) -> Result<void> {
-    const int size = request->page_size() == 0 ? kDefaultPage : request->page_size();
-    if (size < 1 || size > kLargestPage) {
-      return Error{ErrorCode::invalid_argument, "/page_size: " + std::to_string(size) +
-                                                    "; expected a whole number from 1 to " +
-                                                    std::to_string(kLargestPage)};
-    }
+    const auto size = bounded("page_size", request->page_size(), kDefaultPage, kLargestPage);
+    if (!size) return size.error();
     const auto page =
-        list_grids(call.services(), request->volume(), static_cast<std::size_t>(size), request->page_token());
+        list_grids(call.services(), request->volume(), static_cast<std::size_t>(*size), request->page_token());
     if (!page) return page.error();
     set_message(*response, *page);
     return {};

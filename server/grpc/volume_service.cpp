@@ -4,22 +4,12 @@
 #include <string>
 
 #include "server/app/volume_calls.h"
+#include "server/grpc/bounded.h"
 #include "server/grpc/message_codec.h"
 #include "server/grpc/unary_call.h"
 #include "server/grpc/upload_call.h"
 
 namespace geosis::server::rpc {
-namespace {
-
-/// A number of the request, 0 being the default.
-Result<int> bounded(const char* field, int number, int otherwise, int most) {
-  if (number == 0) return otherwise;
-  if (number >= 1 && number <= most) return number;
-  return Error{ErrorCode::invalid_argument, std::string("/") + field + ": " + std::to_string(number) +
-                                                "; expected a whole number from 1 to " + std::to_string(most)};
-}
-
-}  // namespace
 
 grpc::ServerReadReactor<grpc::ByteBuffer>* VolumeServiceDoor::UploadVolume(grpc::CallbackServerContext* context,
                                                                            grpc::ByteBuffer* response) {

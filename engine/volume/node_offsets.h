@@ -20,9 +20,8 @@ class NodeOffsets {
 
   /// Appends the offsets of the next nodes to `offsets`.
   ///
-  /// errors   malformed_input: one that is not finite, further from the first than float32 reaches, or one too many;
-  /// the
-  ///          message says which and what.
+  /// errors   malformed_input: one that is not finite, further from the first than float32 reaches, or one too many.
+  ///          The message says which and what.
   Result<void> add(std::span<const Vec3d> nodes, std::vector<Vec3f>& offsets);
   /// errors   malformed_input: not all nodes have come.
   Result<void> end() const;

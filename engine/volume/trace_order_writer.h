@@ -18,9 +18,8 @@ namespace geosis {
 ///     TraceOrderWriter traces(writer);
 ///     parallel_for(traces.columns(), ...  traces.put(column, i, j, pointers));   // all traces of the column, in order
 ///
-/// memory  0.6 KB for each brick of one layer, once its first rows are there; for each column the samples that go to
-/// one
-///         brick at once.
+/// memory  0.6 KB for each brick of one layer, once its first rows are there; for each column what one brick gets at
+///         once.
 class TraceOrderWriter {
  public:
   /// writer must live as long.

@@ -17,9 +17,8 @@ struct ProbeTrust {
 class ProbeTls {
  public:
   /// host     the name or address that the certificate must be for.
-  /// errors   invalid_argument: authorities that cannot be read. unavailable: no handshake, or a certificate that is
-  /// not
-  ///          to be believed; says why.
+  /// errors   invalid_argument: authorities that cannot be read. unavailable: no handshake, or a certificate
+  ///          that is not to be believed; says why.
   static Result<ProbeTls> begin(int socket, const std::string& host, const ProbeTrust& trust);
   ProbeTls(ProbeTls&&) noexcept;
   ~ProbeTls();

@@ -32,9 +32,8 @@ std::uint64_t position_bytes(GridShape shape, const PositionFormat& format);
 /// Reads a file of positions once, in order, so that it may still arrive, into a node file.
 ///
 /// node_file   where the node file appears; nullopt = an unnamed temporary one.
-/// errors      malformed_input: another size, and as NodeFileWriter; a pillar as check_pillar says.  cancelled.  Those
-/// of
-///             the source.
+/// errors      malformed_input: another size, and as NodeFileWriter; a pillar as check_pillar says.  cancelled.
+///             Those of the source.
 /// memory      2 MB; pillars are kept in an unnamed file beside the node file.
 Result<NodeGrid> import_positions(const ByteSource& source, GridShape shape, const PositionFormat& format,
                                   const std::optional<std::filesystem::path>& node_file, int threads,

@@ -1,9 +1,10 @@
 #include "engine/base/digest.h"
 
-#include <array>
-#include <string_view>
+#include <utility>
 
 #include <openssl/evp.h>
+
+#include "engine/base/hexadecimal.h"
 
 namespace geosis {
 
@@ -28,18 +29,14 @@ void Sha256::update(std::string_view text) {
   update(std::as_bytes(std::span(text.data(), text.size())));
 }
 
+std::array<std::byte, 32> Sha256::bytes() && {
+  std::array<std::byte, 32> digest{};
+  EVP_DigestFinal_ex(state_->context, reinterpret_cast<unsigned char*>(digest.data()), nullptr);
+  return digest;
+}
+
 std::string Sha256::hex() && {
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned length = 0;
-  EVP_DigestFinal_ex(state_->context, digest.data(), &length);
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  text.reserve(2 * length);
-  for (unsigned i = 0; i < length; ++i) {
-    text += kDigits[digest[i] >> 4];
-    text += kDigits[digest[i] & 15];
-  }
-  return text;
+  return hexadecimal(std::move(*this).bytes());
 }
 
 std::string sha256_hex(std::span<const std::byte> bytes) {

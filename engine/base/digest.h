@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <span>
@@ -18,7 +19,8 @@ class Sha256 {
 
   void update(std::span<const std::byte> bytes);
   void update(std::string_view text);
-  std::string hex() &&;  ///< 64 lower-case hexadecimal digits; the object is spent afterwards
+  std::array<std::byte, 32> bytes() &&;  ///< the object is spent afterwards
+  std::string hex() &&;                  ///< the same as 64 lower-case hexadecimal digits
 
  private:
   struct State;

@@ -10,6 +10,7 @@
 #include <xxhash.h>
 
 #include "engine/base/digest.h"
+#include "engine/base/hexadecimal.h"
 #include "engine/volume/brick_layout.h"
 #include "engine/volume/mapped_file.h"
 #include "engine/volume/new_file.h"
@@ -34,7 +35,7 @@ struct Header {
   std::uint32_t reserved = 0;
   std::array<double, 3> origin{}, low{}, high{};
   std::int64_t folded_cells = 0;
-  std::array<std::uint8_t, 32> digest{};
+  std::array<std::byte, 32> digest{};
   std::uint64_t file_bytes = 0;
   std::uint64_t body_checksum = 0;  // XXH3-64 of all that follows the header
   std::uint64_t checksum = 0;       // XXH3-64 of the header with this field zero
@@ -55,25 +56,6 @@ std::array<double, 3> numbers_of(Vec3d p) {
 }
 Vec3d point_of(const std::array<double, 3>& numbers) {
   return {numbers[0], numbers[1], numbers[2]};
-}
-
-std::string hex_of(const std::array<std::uint8_t, 32>& bytes) {
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  for (const std::uint8_t byte : bytes) {
-    text += kDigits[byte >> 4];
-    text += kDigits[byte & 15];
-  }
-  return text;
-}
-
-std::array<std::uint8_t, 32> bytes_of(const std::string& hex) {
-  const auto digit = [&](std::size_t n) { return hex[n] <= '9' ? hex[n] - '0' : hex[n] - 'a' + 10; };
-  std::array<std::uint8_t, 32> bytes{};
-  for (std::size_t n = 0; n < bytes.size(); ++n) {
-    bytes[n] = static_cast<std::uint8_t>(digit(2 * n) << 4 | digit(2 * n + 1));
-  }
-  return bytes;
 }
 
 /// The digest of a grid before its offsets: what kind of thing it is, its shape and its origin.
@@ -99,7 +81,7 @@ NodeReport report_of(const Header& header, GridShape shape) {
 NodeSummary summary_of(const Header& header, GridShape shape) {
   return {.shape = shape,
           .times = (header.flags & kTimes) != 0,
-          .digest = hex_of(header.digest),
+          .digest = hexadecimal(header.digest),
           .report = report_of(header, shape),
           .low = point_of(header.low),
           .high = point_of(header.high),
@@ -203,7 +185,7 @@ Result<NodeGrid> NodeFileWriter::finish(int threads) && {
   header.low = numbers_of(offsets.low());
   header.high = numbers_of(offsets.high());
   header.folded_cells = report->folded_cells;
-  header.digest = bytes_of(std::move(*state->digest).hex());
+  header.digest = std::move(*state->digest).bytes();
   header.file_bytes = state->written;
   header.body_checksum = XXH3_64bits_digest(state->checksum);
   header.checksum = header_checksum(header);

@@ -8,7 +8,9 @@
 
 #include <openssl/crypto.h>
 #include <openssl/rand.h>
-#include <openssl/sha.h>
+
+#include "engine/base/digest.h"
+#include "engine/base/hexadecimal.h"
 
 namespace geosis::server {
 namespace {
@@ -18,27 +20,11 @@ constexpr std::string_view kKeyPrefix = "geosis_";
 constexpr std::size_t kKeyBytes = 32;
 constexpr const char* kRead = "volumes:read";
 constexpr const char* kWrite = "volumes:write";
-constexpr const char* kHexDigits = "0123456789abcdef";
 
-std::array<unsigned char, SHA256_DIGEST_LENGTH> hash_of(std::string_view key) {
-  std::array<unsigned char, SHA256_DIGEST_LENGTH> hash{};
-  SHA256(reinterpret_cast<const unsigned char*>(key.data()), key.size(), hash.data());
-  return hash;
-}
-
-template <class Bytes>
-std::string hexadecimal(const Bytes& bytes) {
-  std::string text;
-  for (const unsigned char byte : bytes) {
-    text += kHexDigits[byte >> 4];
-    text += kHexDigits[byte & 15];
-  }
-  return text;
-}
-
-int digit(char c) {
-  const auto* const found = std::find(kHexDigits, kHexDigits + 16, c);
-  return found == kHexDigits + 16 ? -1 : static_cast<int>(found - kHexDigits);
+std::array<std::byte, 32> hash_of(std::string_view key) {
+  Sha256 hash;
+  hash.update(key);
+  return std::move(hash).bytes();
 }
 
 bool is_name(std::string_view text) {
@@ -77,13 +63,8 @@ Result<ApiKeys::Entry> ApiKeys::parse_line(std::string_view line) {
   if (!is_name(parts[0])) return bad_line("the name is not 1 to 64 of a-z 0-9 - _");
   if (!is_name(parts[2])) return bad_line("the tenant is not 1 to 64 of a-z 0-9 - _");
   const std::string_view hash = std::string_view(parts[1]).substr(std::min(kHashPrefix.size(), parts[1].size()));
-  if (!parts[1].starts_with(kHashPrefix) || hash.size() != 2 * entry.hash.size()) {
+  if (!parts[1].starts_with(kHashPrefix) || !is_lower_hexadecimal(hash) || !read_hexadecimal(hash, entry.hash)) {
     return bad_line("the hash is not sha256: and 64 hexadecimal digits");
-  }
-  for (std::size_t i = 0; i < entry.hash.size(); ++i) {
-    const int high = digit(hash[2 * i]), low = digit(hash[2 * i + 1]);
-    if (high < 0 || low < 0) return bad_line("the hash is not sha256: and 64 hexadecimal digits");
-    entry.hash[i] = static_cast<unsigned char>(16 * high + low);
   }
   const auto scopes = parse_scopes(parts[3]);
   if (!scopes) return bad_line("the scopes are not volumes:read, volumes:write or both with a comma");
@@ -144,8 +125,8 @@ Result<NewKey> make_key(const Caller& caller) {
   if (!is_name(caller.name)) return Error{ErrorCode::invalid_argument, "--name: expected 1 to 64 of a-z 0-9 - _"};
   if (!is_name(caller.tenant)) return Error{ErrorCode::invalid_argument, "--tenant: expected 1 to 64 of a-z 0-9 - _"};
   if (!caller.scopes.read && !caller.scopes.write) return Error{ErrorCode::invalid_argument, "--scopes: none"};
-  std::array<unsigned char, kKeyBytes> random{};
-  if (RAND_bytes(random.data(), static_cast<int>(random.size())) != 1) {
+  std::array<std::byte, kKeyBytes> random{};
+  if (RAND_bytes(reinterpret_cast<unsigned char*>(random.data()), static_cast<int>(random.size())) != 1) {
     return Error{ErrorCode::unavailable, "the system gives no random numbers"};
   }
   NewKey made;

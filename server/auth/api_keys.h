@@ -33,8 +33,7 @@ struct Caller {
 class ApiKeys {
  public:
   /// errors   not_found, unavailable: the file cannot be read.  malformed_input: a line that makes no sense (it is
-  /// named
-  ///          by its number; its text is not repeated), a name or hash twice, no line at all.
+  ///          named by its number; its text is not repeated), a name or hash twice, no line at all.
   static Result<ApiKeys> read(const std::filesystem::path& file);
   static Result<ApiKeys> parse(std::string_view text);
 
@@ -44,7 +43,7 @@ class ApiKeys {
   std::vector<std::string> tenants() const;
 
  private:
-  using Hash = std::array<unsigned char, 32>;
+  using Hash = std::array<std::byte, 32>;
   struct Entry {
     Hash hash;
     Caller caller;

@@ -1,16 +1,15 @@
 #include "server/documents/ids.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "engine/base/digest.h"
+#include "engine/base/hexadecimal.h"
 #include "server/documents/import_options.h"
 
 namespace geosis::server {
 
 bool is_id(const std::string& text) {
-  return text.size() == 64 &&
-         std::all_of(text.begin(), text.end(), [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
+  return text.size() == 64 && is_lower_hexadecimal(text);
 }
 
 // The first line keeps the two kinds of id apart and leaves room for another recipe.

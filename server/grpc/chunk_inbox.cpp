@@ -4,23 +4,16 @@
 #include <array>
 #include <cstring>
 #include <iterator>
+#include <span>
 #include <utility>
+
+#include "engine/base/hexadecimal.h"
 
 namespace geosis::server::rpc {
 namespace {
 
 constexpr std::size_t kMostHeld = 2 << 20;  // bytes
 constexpr std::chrono::milliseconds kLook{250};
-
-std::string hex_of(const std::string& bytes) {
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  for (const unsigned char byte : bytes) {
-    text += kDigits[byte >> 4];
-    text += kDigits[byte & 15];
-  }
-  return text;
-}
 
 }  // namespace
 
@@ -132,7 +125,7 @@ Result<void> ChunkInbox::check() {
     if (!count) return count.error();
     if (*count == 0) break;
   }
-  const std::string stated = hex_of(sha256_), found = std::move(digest_).hex();
+  const std::string stated = hexadecimal(std::as_bytes(std::span(sha256_))), found = std::move(digest_).hex();
   if (found == stated) return {};
   return Error{ErrorCode::invalid_argument, "/sha256: " + stated + "; that of the file is " + found};
 }

@@ -3,18 +3,13 @@
 #include <algorithm>
 #include <cstring>
 
+#include "engine/base/hexadecimal.h"
+
 namespace geosis::server::http {
 namespace {
 
 constexpr int kMostDigits = 15;  // fit into 60 bits
 constexpr std::size_t kMostSkipped = 8 * 1024;
-
-int hexadecimal_digit(char c) {
-  if (c >= '0' && c <= '9') return c - '0';
-  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-  return -1;
-}
 
 bool is_control(char c) {
   return (static_cast<unsigned char>(c) < 0x20 && c != '\t') || c == 0x7f;

@@ -6,6 +6,8 @@
 #include <charconv>
 #include <random>
 
+#include "engine/base/hexadecimal.h"
+
 namespace geosis::server {
 namespace {
 
@@ -28,9 +30,7 @@ bool is_letter(char c) {
 
 /// Hexadecimal digits in lower case, as many as stated, not all of them 0.
 bool is_trace_field(std::string_view text, std::size_t digits) {
-  const auto is_hex = [](char c) { return is_digit(c) || (c >= 'a' && c <= 'f'); };
-  return text.size() == digits && std::all_of(text.begin(), text.end(), is_hex) &&
-         text.find_first_not_of('0') != std::string_view::npos;
+  return text.size() == digits && is_lower_hexadecimal(text) && text.find_first_not_of('0') != std::string_view::npos;
 }
 
 }  // namespace

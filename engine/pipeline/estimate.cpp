@@ -5,6 +5,7 @@
 
 #include "engine/isosurface/estimate_triangles.h"
 #include "engine/pipeline/preview.h"
+#include "engine/pipeline/stages.h"
 
 namespace geosis {
 namespace {
@@ -17,7 +18,7 @@ constexpr double kFixedMemory = 1 << 20;
 constexpr double kMemoryPerThread = 1 << 19;
 constexpr double kMemoryPerTriangle = 125;  // of M0
 constexpr double kMemoryPerPlacedTriangle =
-    24;  // world positions and places among the samples; nodes are a mapped file
+    24;  // positions in the world, places among samples; nodes are a mapped file
 constexpr double kSecondsPerPlacedTriangle = 0.7e-6;
 constexpr double kFixedSeconds = 0.15;  // of one core
 constexpr double kSecondsPerTriangle = 2.2e-6;
@@ -45,10 +46,7 @@ double attributes(const ReconstructOptions& options, bool is_filled) {
 }  // namespace
 
 ReconstructEstimate estimate_reconstruction(const BrickedVolume& samples, const ReconstructOptions& options) {
-  ExtractOptions extract;
-  extract.mode = options.mode;
-  extract.cap = options.cap;
-  extract.region = options.region.value_or(whole(samples.shape()));
+  const ExtractOptions extract = extract_options(options, samples.shape());
   double triangles = estimate_triangles(samples, options.range, extract);
   if (options.preview) triangles /= thinning(preview_step(extract.region, triangles));
   const bool is_filled = options.fill.method != FillMethod::none && has_missing(samples);

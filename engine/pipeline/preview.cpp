@@ -7,6 +7,7 @@
 
 #include "engine/isosurface/estimate_triangles.h"
 #include "engine/pipeline/output_space.h"
+#include "engine/pipeline/stages.h"
 #include "engine/volume/coarse_volume.h"
 
 namespace geosis {
@@ -86,11 +87,10 @@ Result<Reconstruction> reconstruct_preview(const ReconstructInput& input, const 
                                            Progress& progress, StageTimings* timings, const LevelSink& on_level) {
   if (options.grid == GridChoice::curvilinear)
     return Error{ErrorCode::invalid_argument, "a preview of a curvilinear grid; previews lie on the given one"};
-  const GridBox region = options.region.value_or(whole(input.samples.shape()));
-  ExtractOptions extract{.mode = options.mode, .cap = options.cap};
-  extract.region = region;
+  const ExtractOptions extract = extract_options(options, input.samples.shape());
   const double triangles = estimate_triangles(input.samples, options.range, extract);
-  const auto coarse = thin_out(input.samples, region, preview_step(region, triangles), options.threads, progress);
+  const GridIndex step = preview_step(extract.region, triangles);
+  const auto coarse = thin_out(input.samples, extract.region, step, options.threads, progress);
   if (!coarse) return coarse.error();
   const AffineGeometry index_space;
   const GridGeometry& space = options.index_space ? index_space : input.geometry;

@@ -70,14 +70,19 @@ Result<StageSamples> fill_stage(const ReconstructInput& input, const Reconstruct
   return stage;
 }
 
-Result<StageSurface> extract_stage(const BrickedVolume& samples, const ReconstructOptions& options,
-                                   const ExtractStage& stage, Progress& progress) {
+ExtractOptions extract_options(const ReconstructOptions& options, GridShape shape) {
   ExtractOptions extract;
   extract.mode = options.mode;
   extract.cap = options.cap;
-  extract.region = options.region.value_or(whole(samples.shape()));
-  extract.mirrored = stage.mirrored;
+  extract.region = options.region.value_or(whole(shape));
   extract.threads = options.threads;
+  return extract;
+}
+
+Result<StageSurface> extract_stage(const BrickedVolume& samples, const ReconstructOptions& options,
+                                   const ExtractStage& stage, Progress& progress) {
+  ExtractOptions extract = extract_options(options, samples.shape());
+  extract.mirrored = stage.mirrored;
   LabelOptions labels{.amplitudes = stage.amplitudes, .seeds = options.bodies.seeds};
   const bool is_labelled = stage.bodies || stage.amplitudes || !options.bodies.keeps_all();
   StageSurface result;

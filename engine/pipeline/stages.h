@@ -21,6 +21,9 @@ struct StageSamples {
 /// Second stage: missing samples filled as the options say, by the input's own fill where it has one.
 Result<StageSamples> fill_stage(const ReconstructInput& input, const ReconstructOptions& options, Progress& progress);
 
+/// The surface that the options ask for, of samples of this shape.
+ExtractOptions extract_options(const ReconstructOptions& options, GridShape shape);
+
 /// What the surface is needed with, besides what the options' filter of bodies needs.
 struct ExtractStage {
   bool bodies = false;               ///< labels

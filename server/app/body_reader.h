@@ -16,6 +16,14 @@ class BodyReader {
   virtual Result<std::size_t> read(std::span<std::byte> into) = 0;
 };
 
+/// Whether there is more of a body; takes a byte of it if so. errors: those of the body.
+inline Result<bool> goes_on(BodyReader& body) {
+  std::byte more{};
+  const auto count = body.read(std::span(&more, 1));
+  if (!count) return count.error();
+  return *count > 0;
+}
+
 /// A body whose sender may have stated a digest of it.
 class CheckedBody : public BodyReader {
  public:

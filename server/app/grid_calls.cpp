@@ -54,10 +54,9 @@ Result<AddedGrid> upload_grid(const Services& services, const std::string& volum
   const std::uint64_t expected = position_bytes((*stored)->summary.shape, format);
   const ArrivingFile file(announced.value_or(expected), [&](std::span<std::byte> into) { return body.read(into); });
   const auto confirm = [&]() -> Result<void> {
-    std::byte more{};
-    const auto count = body.read(std::span(&more, 1));
-    if (!count) return count.error();
-    if (*count > 0) return bad_positions("more than the " + std::to_string(expected) + " bytes of the volume's nodes");
+    const auto more = goes_on(body);
+    if (!more) return more.error();
+    if (*more) return bad_positions("more than the " + std::to_string(expected) + " bytes of the volume's nodes");
     return body.check();
   };
   return services.volumes.grids().add((*stored)->summary, file, format, confirm, progress);

@@ -1,6 +1,5 @@
 #include "server/app/uploads.h"
 
-#include <array>
 #include <span>
 #include <string>
 #include <utility>
@@ -26,10 +25,9 @@ Result<UploadResult> import_arriving(const Services& services, CheckedBody& body
                                      std::vector<GridCandidate>& candidates) {
   const ArrivingFile file(bytes, [&](std::span<std::byte> into) { return body.read(into); });
   options.confirm = [&, also = std::move(options.confirm)]() -> Result<void> {
-    std::byte more{};
-    const auto count = body.read(std::span(&more, 1));
-    if (!count) return count.error();
-    if (*count > 0) {
+    const auto more = goes_on(body);
+    if (!more) return more.error();
+    if (*more) {
       return Error{ErrorCode::malformed_input,
                    "raw: more than the " + std::to_string(bytes) + " bytes that dims and dtype make"};
     }

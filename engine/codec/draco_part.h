@@ -39,8 +39,7 @@ Result<EncodedPart> encode_part(const MeshPart& part, const EncodeOptions& optio
 /// The part in a Draco file: any triangle mesh with float32 positions, with or without seam ids and attributes.
 ///
 /// errors   malformed_input: bytes that Draco refuses, another kind of geometry, an index or a position out of bounds,
-/// a
-///          named attribute of another type.
+///          a named attribute of another type.
 Result<MeshPart> decode_part(std::span<const std::byte> bytes);
 
 }  // namespace geosis

@@ -85,8 +85,7 @@ Result<EncodedLevel> encode_level(const IndexedMesh& mesh, const VertexAttribute
 ///
 /// returns  triangles part after part, in decoding order; vertices numbered by their first appearance.
 /// errors   malformed_input: bytes that Draco refuses, no parts, or parts that disagree on a seam or on what they
-/// carry.
-///          cancelled.
+///          carry. cancelled.
 /// cost     about 10 million triangles a second and core.
 Result<DecodedLevel> decode_level(const std::vector<std::span<const std::byte>>& parts, int threads = 1,
                                   const Progress& progress = NoProgress());

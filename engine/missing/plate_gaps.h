@@ -31,8 +31,7 @@ struct PlateGaps {
 /// Takes a box (of fewer than 2^32 nodes) apart into its gaps. Incomplete when cancelled.
 ///
 /// cost  O(nodes of the box) to look for wanted nodes, about 0.1 us per wanted node; memory: 4 bytes per node of the
-/// box
-///       and 16 per wanted node that is not alone, 8 of them for the result.
+///       box and 16 per wanted node that is not alone, 8 of them for the result.
 PlateGaps find_plate_gaps(const GapBox& gap, const Progress& progress);
 
 }  // namespace geosis

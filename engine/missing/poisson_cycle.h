@@ -23,8 +23,7 @@ class PoissonCycle {
   PoissonCycle(GridShape shape, std::vector<NodeState> state, Vec3d weights, const Progress& progress);
 
   /// right, u, spare  (nodes of the box); right is zero at nodes that are not wanted, u comes back so; the first and
-  /// the
-  ///                  last layer of nodes are zero and stay so. Incomplete when cancelled.
+  ///                  the last layer of nodes are zero and stay so. Incomplete when cancelled.
   void solve(std::span<const float> right, std::span<float> u, std::span<float> spare);
 
   /// One over the diagonal of L; zero at nodes that are not wanted, or have no neighbour that is not absent.

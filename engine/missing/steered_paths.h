@@ -23,8 +23,8 @@ inline constexpr std::array<TraceStep, neighbours> kTraceSteps = {{{1, 0}, {-1, 
 /// Where the reflector through a node crosses the neighbouring traces.
 ///
 /// depth[n]  (inlines, crosslines, samples): depth on neighbour n, in samples, cut to the trace: reflectors crowd at
-/// its
-///           ends. The corner's is the mean over the two ways round. The node's own where the box has no such trace.
+///           its ends. The corner's is the mean over the two ways round. The node's own where the box has no such
+///           trace.
 struct SteeredPaths {
   GridShape shape;
   std::array<std::vector<float>, neighbours> depth;

@@ -22,8 +22,7 @@ namespace geosis {
 ///
 /// step_lengths  h, per axis, above zero; only their ratios count. Known nodes are finite.
 /// result        every wanted node is finite and in [low, high]; the same for any number of calling threads. A node
-/// that
-///               no stencil holds keeps its starting value. After cancellation some nodes hold unfinished values.
+///               that no stencil holds keeps its starting value. After cancellation some nodes hold unfinished values.
 /// cost          scattered nodes and traces about 0.3 us each, wide gaps 1 us per node of the gap's bounding box;
 ///               memory: at most 60 bytes per node of the box besides the box itself. Serial.
 /// source        Duchon 1977 (thin plates); Hestenes and Stiefel 1952; for wide gaps see wide_plate.h.

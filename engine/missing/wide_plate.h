@@ -22,8 +22,7 @@ struct WidePlateEffort {
 /// nodes    all nodes of the gap.
 /// weights  c_a of the energy, the largest 1.
 /// cost     8 iterations for a cube of 20^3 nodes, 21 for 100^3, about 35 ns per node of its bounding box and
-/// iteration;
-///          memory: 41 bytes per node of the bounding box with two nodes round it, 4 per node of the gap.
+///          iteration; memory: 41 bytes per node of the bounding box with two nodes round it, 4 per node of the gap.
 /// source   Glowinski and Pironneau 1979 (the biharmonic problem by two Poisson problems).
 WidePlateEffort fill_wide_plate(GapBox& gap, std::span<const PlateNode> nodes, Vec3d weights,
                                 const ThinPlateOptions& options, const Progress& progress);

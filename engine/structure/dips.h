@@ -44,8 +44,7 @@ struct DipOptions {
 ///
 /// errors   cancelled.
 /// cost     about 0.4 us a node and core; 3 floats a node beside the result. The same for any number of threads, and
-/// for
-///          samples scaled by a power of two.
+///          for samples scaled by a power of two.
 /// source   B. D. Lucas and T. Kanade 1981, with the sums weighted by a Gaussian of sigma (2, 2, 4).
 Result<Dips> find_dips_by_warping(const SampleBox& box, const DipOptions& options, const Progress& progress);
 
@@ -54,8 +53,7 @@ Result<Dips> find_dips_by_warping(const SampleBox& box, const DipOptions& option
 ///
 /// errors   cancelled.
 /// cost     about 0.5 us a node and core; 8 floats a node beside the result. The same for any number of threads, and
-/// for
-///          samples scaled by a power of two.
+///          for samples scaled by a power of two.
 /// source   L. J. van Vliet and P. W. Verbeek 1995.
 Result<TensorDips> find_dips_by_tensor(const SampleBox& box, const DipOptions& options, const Progress& progress);
 

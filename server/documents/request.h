@@ -13,8 +13,7 @@ namespace geosis::server {
 ///
 /// Everything but `range` has a default; null ends of the range are open; the ends are rounded to float32.
 /// errors   invalid_argument: unknown field, wrong type, value out of bounds.  unsupported: a value of the contract
-/// that
-///          this version cannot compute. Messages start with the field's JSON pointer.
+///          that this version cannot compute. Messages start with the field's JSON pointer.
 Result<ReconstructOptions> parse_request(const Json& document);
 
 /// The canonical form of a request: every field of the contract, defaults filled in, the range as rounded, the region

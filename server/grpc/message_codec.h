@@ -24,8 +24,7 @@ void set_message(google::protobuf::Message& message, const Json& document);
 /// The document of a message from outside: what is not set is left out, and has its default there.
 ///
 /// errors   invalid_argument: a number that is none (NaN), a field that this version does not know, an enum's value
-/// that
-///          has no name; with the field's pointer.
+///          that has no name; with the field's pointer.
 Result<Json> document_of(const google::protobuf::Message& message);
 
 /// Text of at most so many bytes, cut between characters.

@@ -28,8 +28,7 @@ struct FormFields {
 /// Reads a multipart/form-data body (RFC 7578): the field `file` goes to the sink piece by piece, whatever its size.
 ///
 /// errors   malformed_input: not a form, cut short, more than one file; limit_exceeded: a text field or head that is
-/// too
-///          long; those of the reader and the sink.
+///          too long; those of the reader and the sink.
 Result<FormFields> read_form(BodyReader& body, const std::string& boundary, const FileSink& sink);
 
 }  // namespace geosis::server::http

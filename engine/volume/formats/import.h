@@ -100,8 +100,7 @@ std::optional<std::uint64_t> raw_file_bytes(const ImportOptions& options);
 ///
 /// candidates   when not null: filled with the grids found when the header bytes are ambiguous or absent.
 /// errors       malformed_input, unsupported (2D line, prestack, ...), invalid_argument (options), limit_exceeded,
-/// no_space,
-///              unavailable, cancelled.
+///              no_space, unavailable, cancelled.
 Result<ImportedVolume> import_volume(const ByteSource& source, const ImportOptions& options,
                                      const std::optional<std::filesystem::path>& brick_file, Progress& progress,
                                      std::vector<GridCandidate>* candidates = nullptr);

@@ -33,10 +33,9 @@ using TraceMask = std::function<bool(std::int32_t i, std::int32_t j)>;
 ///
 /// samples  called in file order from one thread; one trace in memory at a time.
 /// errors   invalid_argument: something that the headers cannot hold (more than 65535 samples, an interval that is not
-/// a
-///          whole number of microseconds below 65536, a delay that is not a whole number of milliseconds, survey
-///          numbers that are not whole, coordinates beyond 32 bits, text too long).  unavailable: the file cannot be
-///          written. no_space.  cancelled.
+///          a whole number of microseconds below 65536, a delay that is not a whole number of milliseconds, survey
+///          numbers that are not whole, coordinates beyond 32 bits, text too long). unavailable: the file cannot be
+///          written. no_space. cancelled.
 Result<void> write_segy(const std::filesystem::path& path, const SegySurvey& survey, const TraceSamples& samples,
                         const TraceMask& is_live, Progress& progress);
 

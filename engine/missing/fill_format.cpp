@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <xxhash.h>
+#include "engine/volume/file_header.h"
 
 namespace geosis {
 namespace {
@@ -15,6 +15,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "fill files are mapped as they are");
 
 constexpr std::array<char, 8> kMagic = {'G', 'E', 'O', 'F', 'I', 'L', 'L', 'S'};
+constexpr std::string_view kKind = "fill";
 constexpr std::uint64_t kPage = 4096;
 constexpr std::uint8_t kMostReliable = 254;
 
@@ -31,21 +32,8 @@ struct Header {
 };
 static_assert(sizeof(Header) == 72);
 
-constexpr std::uint64_t round_up(std::uint64_t value, std::uint64_t multiple) {
-  return (value + multiple - 1) / multiple * multiple;
-}
-
 Error damaged(const std::string& what) {
-  return {ErrorCode::malformed_input, "fill file: " + what};
-}
-
-std::uint64_t hash(std::span<const std::byte> bytes) {
-  return XXH3_64bits(bytes.data(), bytes.size());
-}
-
-std::uint64_t header_checksum(Header header) {
-  header.checksum = 0;
-  return hash(std::as_bytes(std::span(&header, 1)));
+  return damaged_file(kKind, what);
 }
 
 std::span<const std::byte> index_bytes(const FillFilePlan& plan, std::span<const std::byte> file) {
@@ -53,20 +41,11 @@ std::span<const std::byte> index_bytes(const FillFilePlan& plan, std::span<const
   return file.subspan(plan.summaries_at, end - plan.summaries_at);
 }
 
-Result<Header> read_header(const BrickedVolume& volume, std::span<const std::byte> file) {
-  Header header;
-  if (file.size() < sizeof header)
-    return damaged(std::to_string(file.size()) + " bytes, shorter than its header of " + std::to_string(sizeof header));
-  std::memcpy(&header, file.data(), sizeof header);
-  if (header.magic != kMagic) return damaged("does not start with GEOFILLS");
-  if (header.version != kFillFileVersion)
-    return Error{ErrorCode::unsupported, "fill file: version " + std::to_string(header.version) +
-                                             "; this program reads " + std::to_string(kFillFileVersion)};
-  if (header.file_bytes != file.size())
-    return damaged(std::to_string(file.size()) + " bytes; its header says " + std::to_string(header.file_bytes));
-  if (header_checksum(header) != header.checksum) return damaged("its header fails its checksum");
-  if (GridShape{header.shape[0], header.shape[1], header.shape[2]} != volume.shape() ||
-      header.volume_checksum != index_checksum(volume))
+Result<Header> read_header_of(const BrickedVolume& volume, std::span<const std::byte> file) {
+  auto header = read_header<Header>(kKind, file);
+  if (!header) return header;
+  const auto& [inlines, crosslines, samples] = header->shape;
+  if (GridShape{inlines, crosslines, samples} != volume.shape() || header->volume_checksum != index_checksum(volume))
     return damaged("belongs to another volume");
   return header;
 }
@@ -116,7 +95,7 @@ Result<void> check_records(const FillFilePlan& plan, std::span<const std::byte> 
                      std::to_string(first));
     const std::span<const FilledSample> own(records + first, summary.count);
     const GridIndex place = plan.layout.place(brick);
-    if (hash(std::as_bytes(own)) != summary.checksum) return damaged(name + " fails its checksum");
+    if (checksum_of(std::as_bytes(own)) != summary.checksum) return damaged(name + " fails its checksum");
     if (!is_sound(own, plan.layout.extent(place))) return damaged(name + " has a record that cannot be");
     filled_nodes += count_own(own, plan.layout, place);
     first += summary.count;
@@ -168,13 +147,13 @@ void write_fill_header(const FillFilePlan& plan, std::uint64_t volume_checksum, 
   header.filled_nodes = plan.filled_nodes;
   header.records = plan.records;
   header.file_bytes = plan.file_bytes;
-  header.index_checksum = hash(index_bytes(plan, file));
+  header.index_checksum = checksum_of(index_bytes(plan, file));
   header.checksum = header_checksum(header);
   std::memcpy(file.data(), &header, sizeof header);
 }
 
 Result<FillFilePlan> read_fill_file(const BrickedVolume& volume, std::span<const std::byte> file) {
-  const auto header = read_header(volume, file);
+  const auto header = read_header_of(volume, file);
   if (!header) return header.error();
   if (header->records > file.size() / sizeof(FilledSample))
     return damaged(std::to_string(header->records) + " records are more than it holds");
@@ -182,7 +161,7 @@ Result<FillFilePlan> read_fill_file(const BrickedVolume& volume, std::span<const
   plan.filled_nodes = header->filled_nodes;
   if (plan.file_bytes != file.size())
     return damaged(std::to_string(file.size()) + " bytes; expected " + std::to_string(plan.file_bytes));
-  if (hash(index_bytes(plan, file)) != header->index_checksum) return damaged("its index fails its checksum");
+  if (checksum_of(index_bytes(plan, file)) != header->index_checksum) return damaged("its index fails its checksum");
   if (auto checked = check_records(plan, file); !checked) return std::move(checked).error();
   return plan;
 }

@@ -9,9 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include <xxhash.h>
-
 #include "engine/volume/brick_layout.h"
+#include "engine/volume/file_header.h"
 #include "engine/volume/mapped_file.h"
 #include "engine/volume/new_file.h"
 
@@ -21,6 +20,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "grid files are copied as they are");
 
 constexpr std::array<char, 8> kMagic = {'G', 'E', 'O', 'L', 'A', 'Y', 'E', 'R'};
+constexpr std::string_view kKind = "grid";
 constexpr std::uint32_t kVersion = 1;
 constexpr std::int32_t kWarped = 1;
 
@@ -38,12 +38,7 @@ struct Header {
 static_assert(sizeof(Header) == 128);
 
 Error damaged(const std::string& what) {
-  return {ErrorCode::malformed_input, "grid file: " + what};
-}
-
-std::uint64_t header_checksum(Header header) {
-  header.checksum = 0;
-  return XXH3_64bits(&header, sizeof header);
+  return damaged_file(kKind, what);
 }
 
 std::size_t agreements_of(GridShape shape) {
@@ -66,21 +61,10 @@ StructureReport unpacked(const std::array<double, 9>& numbers, bool warped) {
           .untied_share = numbers[8]};
 }
 
-Result<Header> read_header(GridShape shape, std::span<const std::byte> file) {
-  Header header;
-  if (file.size() < sizeof header) {
-    return damaged(std::to_string(file.size()) + " bytes, shorter than its header of " + std::to_string(sizeof header));
-  }
-  std::memcpy(&header, file.data(), sizeof header);
-  if (header.magic != kMagic) return damaged("does not start with GEOLAYER");
-  if (header.version != kVersion) {
-    return Error{ErrorCode::unsupported, "grid file: version " + std::to_string(header.version) +
-                                             "; this program reads " + std::to_string(kVersion)};
-  }
-  if (header.file_bytes != file.size()) {
-    return damaged(std::to_string(file.size()) + " bytes; its header says " + std::to_string(header.file_bytes));
-  }
-  if (header_checksum(header) != header.checksum) return damaged("its header fails its checksum");
+Result<Header> read_header_of(GridShape shape, std::span<const std::byte> file) {
+  const auto read = read_header<Header>(kKind, file);
+  if (!read) return read;
+  const Header& header = *read;
   if (GridShape{header.shape[0], header.shape[1], header.shape[2]} != shape)
     return damaged("belongs to another volume");
   if (header.layers < shape.samples || header.layers > kMaxAxisNodes) {
@@ -118,7 +102,7 @@ Result<void> write_grid_file(const StructuralGrid& grid, const std::filesystem::
 }
 
 Result<StructuralGrid> read_grid_file(GridShape shape, std::span<const std::byte> file) {
-  const auto header = read_header(shape, file);
+  const auto header = read_header_of(shape, file);
   if (!header) return header.error();
   const std::size_t words = LayerPaths::word_count(shape, header->layers), agreements = agreements_of(shape);
   const std::span<const std::byte> body = file.subspan(sizeof(Header));

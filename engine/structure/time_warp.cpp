@@ -75,7 +75,7 @@ class Warper {
         float* to = traces_.plane(loaded_ + static_cast<std::int32_t>(n)) + j * fine_;
         for (std::size_t m = 0; m < fine_; ++m) {
           const float place = (static_cast<float>(m) - static_cast<float>(kFinePad)) / kFinePerSample;
-          to[m] = trace.at(0, std::clamp(place, 0.0f, static_cast<float>(samples_ - 1)));
+          to[m] = trace.point(0, std::clamp(place, 0.0f, static_cast<float>(samples_ - 1))).value;
         }
       }
     });

@@ -12,19 +12,18 @@ class WarpedTrace {
  public:
   static constexpr std::size_t kPad = 16;  ///< samples beyond the ends that may be asked for, less two
 
-  void load(const float* samples, std::size_t count) {
+  void load(const float* samples, std::size_t count, double scale = 1) {
     padded_.resize(count + 2 * kPad);
-    std::copy_n(samples, count, padded_.begin() + kPad);
-    std::fill_n(padded_.begin(), kPad, samples[0]);
-    std::fill_n(padded_.end() - kPad, kPad, samples[count - 1]);
+    std::transform(samples, samples + count, padded_.begin() + kPad,
+                   [=](float sample) { return static_cast<float>(sample * scale); });
+    std::fill_n(padded_.begin(), kPad, padded_[kPad]);
+    std::fill_n(padded_.end() - kPad, kPad, padded_[kPad + count - 1]);
   }
-
-  /// Catmull-Rom's cubic at k + shift.
-  float at(std::size_t k, float shift) const { return point(k, shift).value; }
 
   struct Point {
     float value, slope;
   };
+  /// Catmull-Rom's cubic at k + shift.
   Point point(std::size_t k, float shift) const {
     const float position = static_cast<float>(k + kPad) + shift;
     const auto below = static_cast<std::ptrdiff_t>(position);

@@ -6,6 +6,7 @@
 #include "engine/structure/dips.h"
 #include "engine/structure/sample_scale.h"
 #include "engine/structure/smoothing.h"
+#include "engine/structure/warped_trace.h"
 
 namespace geosis {
 namespace {
@@ -13,36 +14,6 @@ namespace {
 constexpr int kRounds = 4;
 constexpr Vec3d kWindow = {2, 2, 4};
 constexpr double kLeastContrast = 1e-3;  // of the box's mean squared slope: below it, dips rather stay where they are
-constexpr std::size_t kPad = 5;  // samples that repeat a trace's ends: half the steepest dip and the cubic's reach
-
-/// A trace with its ends repeated, scaled; NaN stays.
-class PaddedTrace {
- public:
-  void load(const float* samples, std::size_t count, double scale) {
-    padded_.resize(count + 2 * kPad);
-    for (std::size_t k = 0; k < count; ++k) padded_[kPad + k] = static_cast<float>(samples[k] * scale);
-    std::fill_n(padded_.begin(), kPad, padded_[kPad]);
-    std::fill_n(padded_.end() - kPad, kPad, padded_[kPad + count - 1]);
-  }
-
-  struct Point {
-    float value, slope;
-  };
-  /// Catmull-Rom's cubic at k + shift.
-  Point at(std::size_t k, float shift) const {
-    const float position = static_cast<float>(k + kPad) + shift;
-    const auto below = static_cast<std::size_t>(position);
-    const float t = position - static_cast<float>(below);
-    const float* x = &padded_[below - 1];
-    const float a = x[2] - x[0];
-    const float b = 2 * x[0] - 5 * x[1] + 4 * x[2] - x[3];
-    const float c = 3 * (x[1] - x[2]) + x[3] - x[0];
-    return {x[1] + 0.5f * t * (a + t * (b + t * c)), 0.5f * (a + t * (2 * b + 3 * t * c))};
-  }
-
- private:
-  std::vector<float> padded_;
-};
 
 /// The links of one lateral direction: from each trace to the one `stride` nodes on.
 class Links {
@@ -118,12 +89,12 @@ class Links {
         std::fill_n(stiffness.begin() + static_cast<std::ptrdiff_t>(first), samples_, 0.0f);
         return;
       }
-      thread_local PaddedTrace here, next;
+      thread_local WarpedTrace here, next;
       here.load(&box_.value[first], samples_, scale_);
       next.load(&box_.value[first + stride_], samples_, scale_);
       for (std::size_t k = 0; k < samples_; ++k) {
         const std::size_t n = first + k;
-        const auto a = here.at(k, -0.5f * dip[n]), b = next.at(k, 0.5f * dip[n]);
+        const auto a = here.point(k, -0.5f * dip[n]), b = next.point(k, 0.5f * dip[n]);
         const float slope = 0.5f * (a.slope + b.slope), difference = b.value - a.value;
         const float weight = link_weight(n);
         const bool is_usable = weight > 0 && std::isfinite(slope) && std::isfinite(difference);

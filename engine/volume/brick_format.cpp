@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <xxhash.h>
+#include "engine/volume/file_header.h"
 
 namespace geosis {
 namespace {
@@ -15,6 +15,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "brick files are mapped as they are");
 
 constexpr std::array<char, 8> kMagic = {'G', 'E', 'O', 'B', 'R', 'I', 'C', 'K'};
+constexpr std::string_view kKind = "brick";
 constexpr std::uint32_t kMaxSections = 64;
 constexpr std::uint64_t kPage = 4096;
 
@@ -41,16 +42,8 @@ struct Section {
 };
 static_assert(sizeof(Section) == 32);
 
-constexpr std::uint64_t round_up(std::uint64_t value, std::uint64_t multiple) {
-  return (value + multiple - 1) / multiple * multiple;
-}
-
 Error damaged(const std::string& what) {
-  return {ErrorCode::malformed_input, "brick file: " + what};
-}
-
-std::uint64_t hash(std::span<const std::byte> bytes) {
-  return XXH3_64bits(bytes.data(), bytes.size());
+  return damaged_file(kKind, what);
 }
 
 std::uint64_t header_checksum(Header header, std::span<const Section> sections) {
@@ -59,20 +52,13 @@ std::uint64_t header_checksum(Header header, std::span<const Section> sections) 
   std::vector<std::byte> bytes(sizeof header + table.size());
   std::memcpy(bytes.data(), &header, sizeof header);
   std::memcpy(bytes.data() + sizeof header, table.data(), table.size());
-  return hash(bytes);
+  return checksum_of(bytes);
 }
 
-Result<Header> read_header(std::span<const std::byte> file) {
-  Header header;
-  if (file.size() < sizeof header)
-    return damaged(std::to_string(file.size()) + " bytes, shorter than its header of " + std::to_string(sizeof header));
-  std::memcpy(&header, file.data(), sizeof header);
-  if (header.magic != kMagic) return damaged("does not start with GEOBRICK");
-  if (header.version != kBrickFileVersion)
-    return Error{ErrorCode::unsupported, "brick file: version " + std::to_string(header.version) +
-                                             "; this program reads " + std::to_string(kBrickFileVersion)};
-  if (header.file_bytes != file.size())
-    return damaged(std::to_string(file.size()) + " bytes; its header says " + std::to_string(header.file_bytes));
+Result<Header> read_bricks_header(std::span<const std::byte> file) {
+  const auto read = read_unchecked_header<Header>(kKind, file);
+  if (!read) return read;
+  const Header& header = *read;
   if (header.brick_samples != kBrickSamples || header.block_cells != kBlockCells)
     return Error{ErrorCode::unsupported, "brick file: bricks of " + std::to_string(header.brick_samples) +
                                              " samples and blocks of " + std::to_string(header.block_cells) + " cells"};
@@ -104,7 +90,7 @@ Result<std::uint64_t> locate(std::span<const Section> sections, SectionKind kind
   if (found->bytes != bytes)
     return damaged(name + " has " + std::to_string(found->bytes) + " bytes; expected " + std::to_string(bytes));
   if (found->offset % 8 != 0) return damaged(name + " starts at " + std::to_string(found->offset));
-  if (kind != SectionKind::samples && hash(file.subspan(found->offset, bytes)) != found->checksum)
+  if (kind != SectionKind::samples && checksum_of(file.subspan(found->offset, bytes)) != found->checksum)
     return damaged(name + " fails its checksum");
   return found->offset;
 }
@@ -130,7 +116,7 @@ void write_brick_header(const BrickFilePlan& plan, std::span<std::byte> file) {
                                              plan.block_ranges_at, bricks * kBlockRangeBytes, 0},
                                      Section{static_cast<std::uint32_t>(SectionKind::samples), 0, plan.samples_at,
                                              plan.layout.stored_samples() * sizeof(float), 0}};
-  for (Section& s : std::span(sections).first(2)) s.checksum = hash(file.subspan(s.offset, s.bytes));
+  for (Section& s : std::span(sections).first(2)) s.checksum = checksum_of(file.subspan(s.offset, s.bytes));
 
   const GridShape shape = plan.layout.shape();
   Header header;
@@ -143,7 +129,7 @@ void write_brick_header(const BrickFilePlan& plan, std::span<std::byte> file) {
 }
 
 Result<BrickFilePlan> read_brick_header(std::span<const std::byte> file) {
-  const auto header = read_header(file);
+  const auto header = read_bricks_header(file);
   if (!header) return header.error();
   const auto sections = read_sections(*header, file);
   if (!sections) return sections.error();

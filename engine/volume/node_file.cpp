@@ -12,6 +12,7 @@
 #include "engine/base/digest.h"
 #include "engine/base/hexadecimal.h"
 #include "engine/volume/brick_layout.h"
+#include "engine/volume/file_header.h"
 #include "engine/volume/mapped_file.h"
 #include "engine/volume/new_file.h"
 #include "engine/volume/write_behind.h"
@@ -23,6 +24,7 @@ static_assert(std::endian::native == std::endian::little, "node files are copied
 static_assert(sizeof(Vec3f) == 12 && sizeof(Vec3d) == 24, "three numbers and nothing else");
 
 constexpr std::array<char, 8> kMagic = {'G', 'E', 'O', 'N', 'O', 'D', 'E', 'S'};
+constexpr std::string_view kKind = "node";
 constexpr std::uint32_t kVersion = 1;
 constexpr std::uint32_t kTimes = 1, kMirrored = 2;
 constexpr std::uint64_t kWriteBehind = std::uint64_t{8} << 20;
@@ -43,12 +45,7 @@ struct Header {
 static_assert(sizeof(Header) == 168);
 
 Error damaged(const std::string& what) {
-  return {ErrorCode::malformed_input, "node file: " + what};
-}
-
-std::uint64_t header_checksum(Header header) {
-  header.checksum = 0;
-  return XXH3_64bits(&header, sizeof header);
+  return damaged_file(kKind, what);
 }
 
 std::array<double, 3> numbers_of(Vec3d p) {
@@ -93,21 +90,10 @@ bool are_finite(std::span<const Vec3f> nodes) {
                              [](Vec3f p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); });
 }
 
-Result<Header> read_header(GridShape shape, std::span<const std::byte> file) {
-  Header header;
-  if (file.size() < sizeof header) {
-    return damaged(std::to_string(file.size()) + " bytes, shorter than its header of " + std::to_string(sizeof header));
-  }
-  std::memcpy(&header, file.data(), sizeof header);
-  if (header.magic != kMagic) return damaged("does not start with GEONODES");
-  if (header.version != kVersion) {
-    return Error{ErrorCode::unsupported, "node file: version " + std::to_string(header.version) +
-                                             "; this program reads " + std::to_string(kVersion)};
-  }
-  if (header.file_bytes != file.size()) {
-    return damaged(std::to_string(file.size()) + " bytes; its header says " + std::to_string(header.file_bytes));
-  }
-  if (header_checksum(header) != header.checksum) return damaged("its header fails its checksum");
+Result<Header> read_header_of(GridShape shape, std::span<const std::byte> file) {
+  const auto read = read_header<Header>(kKind, file);
+  if (!read) return read;
+  const Header& header = *read;
   if (GridShape{header.shape[0], header.shape[1], header.shape[2]} != shape)
     return damaged("belongs to a volume of another shape");
   for (const auto& point : {header.origin, header.low, header.high}) {
@@ -199,7 +185,7 @@ Result<NodeGrid> NodeFileWriter::finish(int threads) && {
 }
 
 Result<NodeGrid> read_node_file(GridShape shape, std::span<const std::byte> file, std::shared_ptr<const void> owner) {
-  const auto header = read_header(shape, file);
+  const auto header = read_header_of(shape, file);
   if (!header) return header.error();
   const std::span<const std::byte> body = file.subspan(sizeof(Header));
   const auto expected = static_cast<std::uint64_t>(shape.count()) * sizeof(Vec3f);

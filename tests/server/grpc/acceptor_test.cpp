@@ -9,21 +9,13 @@
 #include <poll.h>
 #include <sys/socket.h>
 
+#include "tests/server/grpc/sockets.h"
+
 namespace geosis::server::rpc {
 namespace {
 
 using namespace std::chrono_literals;
-
-/// A connected socket.
-Descriptor connect_to(std::uint16_t port) {
-  Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  EXPECT_EQ(::connect(socket.number(), reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
-  return socket;
-}
+using test::connect_to;
 
 /// Whether the other side hangs up before it has said anything.
 bool is_refused(const Descriptor& socket) {

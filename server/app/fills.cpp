@@ -93,12 +93,7 @@ Result<void> Fills::remove(const std::string& volume) {
     const std::lock_guard lock(mutex_);
     recent_.remove_if([&](const Recent& entry) { return entry.filled->volume->summary.id == volume; });
   }
-  const auto names = store_.children(folder(volume));
-  if (!names) return names.error();
-  for (const std::string& name : *names) {
-    if (auto done = store_.remove(folder(volume) + name); !done) return done;
-  }
-  return {};
+  return remove_children(store_, folder(volume));
 }
 
 }  // namespace geosis::server

@@ -197,12 +197,7 @@ Result<void> Grids::forget(const BlobKey& folder) {
 Result<void> Grids::remove_files(const std::string& volume, const std::string& id) {
   const BlobKey folder = this->folder(volume, id);
   if (auto done = forget(folder); !done) return done;
-  const auto files = store_.children(folder);
-  if (!files) return files.error();
-  for (const std::string& file : *files) {
-    if (auto done = store_.remove(folder + file); !done) return done;
-  }
-  return {};
+  return remove_children(store_, folder);
 }
 
 Result<void> Grids::remove_all(const std::string& volume) {

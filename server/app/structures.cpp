@@ -95,12 +95,7 @@ Result<void> Structures::remove(const std::string& volume) {
     const std::lock_guard lock(mutex_);
     recent_.remove_if([&](const Recent& entry) { return entry.key.starts_with(folder(volume)); });
   }
-  const auto names = store_.children(folder(volume));
-  if (!names) return names.error();
-  for (const std::string& name : *names) {
-    if (auto done = store_.remove(folder(volume) + name); !done) return done;
-  }
-  return {};
+  return remove_children(store_, folder(volume));
 }
 
 }  // namespace geosis::server

@@ -102,4 +102,14 @@ class BlobStore {
   DamageListener listener_;
 };
 
+/// Removes what is directly below `folder` (which ends with "/"). errors: those of the store; then some may be left.
+inline Result<void> remove_children(BlobStore& store, const BlobKey& folder) {
+  const auto names = store.children(folder);
+  if (!names) return names.error();
+  for (const std::string& name : *names) {
+    if (auto done = store.remove(folder + name); !done) return done;
+  }
+  return {};
+}
+
 }  // namespace geosis::server

@@ -5,8 +5,6 @@
 
 #include <poll.h>
 #include <sys/eventfd.h>
-#include <sys/socket.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 namespace geosis::server::rpc {
@@ -14,19 +12,7 @@ namespace {
 
 constexpr int kTickMilliseconds = 250;
 constexpr int kLookMilliseconds = 20;  // a flood begins a few thousand calls in that time
-
-/// Names a socket as long as it is open; 0 for what is none.
-std::uint64_t inode_of(int number) {
-  struct stat status {};
-  return ::fstat(number, &status) == 0 && S_ISSOCK(status.st_mode) ? status.st_ino : 0;
-}
-
-/// gRPC notices the end and closes the socket, which then waits for nothing: its peer does not deserve it.
-void reset(int socket) {
-  const linger at_once{.l_onoff = 1, .l_linger = 0};
-  ::setsockopt(socket, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
-  ::shutdown(socket, SHUT_RDWR);
-}
+constexpr std::chrono::seconds kLongestWait{1};
 
 }  // namespace
 
@@ -68,7 +54,7 @@ void Acceptor::run() {
 void Acceptor::look() {
   std::vector<FloodGuard::Open> connections;
   for (const Open& one : open_) {
-    if (inode_of(one.number) == one.inode) connections.push_back({one.name, bytes_read(one.number)});
+    if (one.socket.is_open()) connections.push_back({one.name, bytes_read(one.socket.number()), one.was_ended});
   }
   FloodGuard::Verdict verdict;
   try {
@@ -76,11 +62,30 @@ void Acceptor::look() {
   } catch (...) {  // no memory: the next look may have some
   }
   is_full_ = verdict.is_full;
-  for (const Open& one : open_) {
-    const bool is_harmful =
-        std::find(verdict.harmful.begin(), verdict.harmful.end(), one.name) != verdict.harmful.end();
-    if (is_harmful && inode_of(one.number) == one.inode) reset(one.number);
+  end(verdict.harmful);
+  hand_waiting();
+}
+
+void Acceptor::end(const std::vector<std::string>& harmful) {
+  for (Open& one : open_) {
+    if (one.was_ended || std::find(harmful.begin(), harmful.end(), one.name) == harmful.end()) continue;
+    one.socket.reset();
+    one.was_ended = true;
   }
+}
+
+bool Acceptor::has_ending(const std::string& peer) const {
+  return std::any_of(open_.begin(), open_.end(),
+                     [&](const Open& one) { return one.was_ended && one.peer == peer && one.socket.is_open(); });
+}
+
+void Acceptor::hand_waiting() {
+  const auto now = std::chrono::steady_clock::now();
+  std::erase_if(waiting_, [&](Waiting& one) {
+    if (now - one.since < kLongestWait && has_ending(one.peer)) return false;
+    hand_(std::move(one.socket));
+    return true;
+  });
 }
 
 void Acceptor::accept_all() {
@@ -97,15 +102,18 @@ void Acceptor::accept_all() {
     }
     if (!has_room_for(accepted.peer)) continue;  // closed
     const int number = accepted.socket.number();
-    open_.push_back({number, inode_of(number), accepted.peer, connection_name(number)});
+    const bool must_wait = has_ending(accepted.peer);
+    open_.push_back({LentSocket(number), accepted.peer, connection_name(number)});
     count_ = open_.size();
-    hand_(std::move(accepted.socket));
+    if (must_wait)
+      waiting_.push_back({std::move(accepted.socket), accepted.peer, std::chrono::steady_clock::now()});
+    else
+      hand_(std::move(accepted.socket));
   }
 }
 
-/// gRPC tells nobody when it closes a socket; its number then names nothing, or another file.
 void Acceptor::forget_closed() {
-  std::erase_if(open_, [](const Open& one) { return one.inode == 0 || inode_of(one.number) != one.inode; });
+  std::erase_if(open_, [](const Open& one) { return !one.socket.is_open(); });
   count_ = open_.size();
 }
 

@@ -13,6 +13,7 @@
 
 #include "engine/base/result.h"
 #include "server/grpc/flood_guard.h"
+#include "server/grpc/lent_socket.h"
 #include "server/net/descriptor.h"
 #include "server/net/listener.h"
 
@@ -20,12 +21,15 @@ namespace geosis::server::rpc {
 
 /// Accepts connections in gRPC's place, on a thread of its own: it outlives the want of descriptors, refuses what is
 /// too many, ends what floods, and knows its port. gRPC's own acceptor does none of it.
+///
+/// A connection that was ended keeps its memory until gRPC has let go of it. As long as one of a peer does, up to a
+/// second, his further ones wait: who floods and comes back has one flood at a time.
 class Acceptor {
  public:
   struct Limits {
     std::size_t connections, connections_per_peer;
   };
-  /// Takes over an accepted socket.
+  /// Takes over an accepted socket; must not block: while it does, nobody looks.
   using Hand = std::function<void(Descriptor socket)>;
 
   /// What becomes of connections that are there, and whether others may come; asked often while there are any.
@@ -45,13 +49,21 @@ class Acceptor {
 
  private:
   struct Open {
-    int number;           ///< of gRPC's descriptor
-    std::uint64_t inode;  ///< another one: it was closed, and the number is somebody else's
+    LentSocket socket;
     std::string peer;
-    std::string name;  ///< connection_name()
+    std::string name;        ///< connection_name()
+    bool was_ended = false;  ///< by us
+  };
+  struct Waiting {
+    Descriptor socket;
+    std::string peer;
+    std::chrono::steady_clock::time_point since;
   };
   void run();
   void look();
+  void end(const std::vector<std::string>& harmful);
+  void hand_waiting();
+  bool has_ending(const std::string& peer) const;
   void accept_all();
   void forget_closed();
   bool has_room_for(const std::string& peer);
@@ -66,7 +78,9 @@ class Acceptor {
   std::atomic<bool> is_stopping_{false};
   std::atomic<std::size_t> count_{0};
   std::atomic<bool> is_full_{false};  ///< by the last look's verdict
-  std::vector<Open> open_;            ///< of the thread
+  // Of the thread:
+  std::vector<Open> open_;
+  std::vector<Waiting> waiting_;  ///< accepted: they are among open_, too
   std::thread thread_;
 };
 

@@ -63,7 +63,7 @@ void visit_servers(Visit visit) {
     const Json& servers = in(page, "server");
     for (const Json& server : servers) {
       first = id_in(in(server, "ref"), "serverId") + 1;
-      visit(server, first - 1);
+      visit(first - 1);
     }
     if (servers.empty() || in(page, "end") == true) return;
   }
@@ -96,26 +96,17 @@ std::string escaped(std::string_view host) {
 
 }  // namespace
 
-std::uint64_t held_calls() {
-  std::uint64_t count = 0;
-  visit_servers([&](const Json& server, std::int64_t) {
-    const Json& data = in(server, "data");
-    count +=
-        difference(number_in(data, "callsStarted"), number_in(data, "callsSucceeded") + number_in(data, "callsFailed"));
-  });
-  return count;
-}
-
-std::vector<ConnectionCounts> counts_by_connection() {
+std::vector<ConnectionCounts> count_connections(const std::function<bool(const std::string& name)>& is_wanted) {
   std::vector<ConnectionCounts> all;
-  visit_servers([&](const Json&, std::int64_t server) {
+  visit_servers([&](std::int64_t server) {
     for (std::int64_t first = 0;;) {
       const Json page = document(grpc_channelz_get_server_sockets(server, first, kSocketsAtOnce));
       const Json& sockets = in(page, "socketRef");
       for (const Json& socket : sockets) {
         const std::int64_t id = id_in(socket, "socketId");
-        all.push_back(counts_of(connection_in(socket), id));
         first = id + 1;
+        std::string name = connection_in(socket);
+        if (is_wanted(name)) all.push_back(counts_of(std::move(name), id));
       }
       if (sockets.empty() || in(page, "end") == true) return;
     }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,11 +18,9 @@ struct ConnectionCounts {
   std::uint64_t messages = 0;  ///< received and sent whole, ever
 };
 
-/// Calls that are held, by all servers of this process. cost: 20 microseconds.
-std::uint64_t held_calls();
-
-/// Of each connection of all servers of this process. cost: 20 microseconds each.
-std::vector<ConnectionCounts> counts_by_connection();
+/// Of those connections of all servers of this process whose names are wanted. cost: 20 microseconds each, and 1 for
+/// each other one.
+std::vector<ConnectionCounts> count_connections(const std::function<bool(const std::string& name)>& is_wanted);
 
 /// The client's address of a connected socket, as gRPC writes it; empty for what is none.
 std::string connection_name(int socket);

@@ -15,6 +15,7 @@
 #include "server/grpc/call.h"
 #include "server/grpc/extraction_service.h"
 #include "server/grpc/grid_service.h"
+#include "server/grpc/hand_over.h"
 #include "server/grpc/self_probe.h"
 #include "server/grpc/volume_service.h"
 
@@ -24,8 +25,11 @@ namespace {
 constexpr int kLargestMessage = 4 << 20;  // received: a chunk of a file
 constexpr int kMinute = 60'000;
 constexpr int kLargestMetadata = 16 * 1024;
+constexpr int kLargestRead = 128 * 1024;
 constexpr std::size_t kMemory = std::size_t{256} << 20;  // beyond, gRPC reads more slowly
-constexpr int kReflectionThreads = 8;                    // its service is the one that holds a thread for each call
+constexpr std::size_t kLanes = 8;                        // each costs 14 us of every hand-over
+constexpr std::chrono::milliseconds kLanePatience{1000};
+constexpr int kReflectionThreads = 8;  // its service is the one that holds a thread for each call
 constexpr std::uint64_t kUploadRate = 16 * 1024;
 
 /// A probe's way in: addresses that stand for all of a machine's are asked at loopback.
@@ -66,6 +70,7 @@ void set_limits(grpc::ServerBuilder& builder, const DoorOptions& options) {
   builder.SetResourceQuota(grpc::ResourceQuota("geosis").Resize(kMemory).SetMaxThreads(kReflectionThreads));
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, options.streams_per_connection);
   builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE, kLargestMetadata);
+  builder.AddChannelArgument(GRPC_ARG_TCP_MAX_READ_CHUNK_SIZE, kLargestRead);
   builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, static_cast<int>(options.patience.count()));
   // A peer that is gone without a word is noticed; one that asks all the time is told to go.
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kMinute);
@@ -81,10 +86,23 @@ void set_limits(grpc::ServerBuilder& builder, const DoorOptions& options) {
 FloodGuard flood_guard(const DoorOptions& options) {
   const auto open = static_cast<std::uint64_t>(options.streams_per_connection);
   return FloodGuard(
-      {.calls = {.of_one = 16 * open, .of_one_then = 2 * open, .of_all = 128 * open},
-       .bytes = {.of_one = 2 * kLargestMessage, .of_one_then = 2 * kLargestMessage, .of_all = kMemory / 2},
+      {.calls = {.of_one = 16 * open, .of_one_then = 2 * open, .of_all = 32 * open},
+       .bytes = {.of_one = 2 * kLargestMessage, .of_one_then = 2 * kLargestMessage, .of_all = kMemory / 4},
        .message_bytes = kLargestMessage,
-       .head_bytes = 2 * kLargestMetadata});
+       .head_bytes = 2 * kLargestMetadata,
+       .unlooked_bytes = 16 * 1024});
+}
+
+/// A way into a server that is not built yet. gRPC lets one socket in at a time by each.
+HandOver::Lane add_lane(grpc::ServerBuilder& builder, const std::shared_ptr<grpc::ServerCredentials>& credentials) {
+  using Connections = grpc::ServerBuilder::experimental_type::ExternalConnectionType;
+  std::shared_ptr<grpc::experimental::ExternalConnectionAcceptor> taker =
+      builder.experimental().AddExternalConnectionAcceptor(Connections::FROM_FD, credentials);
+  return [taker](Descriptor socket) {
+    grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters connection;
+    connection.fd = socket.release();
+    taker->HandleNewConnection(&connection);
+  };
 }
 
 }  // namespace
@@ -120,8 +138,8 @@ class Door::Running {
     builder.RegisterService(&volumes_);
     builder.RegisterService(&extractions_);
     builder.RegisterService(&grids_);
-    taker_ = builder.experimental().AddExternalConnectionAcceptor(
-        grpc::ServerBuilder::experimental_type::ExternalConnectionType::FROM_FD, secured->server);
+    std::vector<HandOver::Lane> lanes;
+    for (std::size_t n = 0; n < kLanes; ++n) lanes.push_back(add_lane(builder, secured->server));
     server_ = builder.BuildAndStart();
     if (!server_ && !options.tls.certificate.empty()) {
       return Error{ErrorCode::invalid_argument,
@@ -129,11 +147,15 @@ class Door::Running {
     }
     if (!server_) return Error{ErrorCode::internal, "gRPC did not start"};
     set_serving(true);
+    hand_over_ = std::make_unique<HandOver>(std::move(lanes), kLanePatience);
     acceptor_ = std::make_unique<Acceptor>(
         *std::move(listener), Acceptor::Limits{options.connections, options.connections_per_peer},
-        [this](Descriptor socket) { take(std::move(socket)); },
-        [guard = flood_guard(options)](const auto& open) mutable { return guard.look(open); },
-        [this] { room_.open.end_late_ones(); });
+        [this](Descriptor socket) { hand_over_->hand(std::move(socket)); },
+        [this, guard = flood_guard(options)](const auto& open) mutable { return guard.look(open, calls()); },
+        [this] {
+          room_.open.end_late_ones();
+          hand_over_->end_stuck();
+        });
     probe_ = std::make_unique<SelfProbe>(probe_target(options.listen, acceptor_->port()), secured->own_client,
                                          options.probe_interval, [this] { return acceptor_->may_be_full(); });
     return {};
@@ -156,6 +178,7 @@ class Door::Running {
     if (is_draining_.exchange(true)) return;
     set_serving(false);
     acceptor_->stop();
+    hand_over_->stop();
     server_->Shutdown(std::chrono::system_clock::now() + grace);
   }
 
@@ -167,21 +190,15 @@ class Door::Running {
   }
 
  private:
-  void take(Descriptor socket) {
-    grpc::experimental::ExternalConnectionAcceptor::NewConnectionParameters connection;
-    connection.fd = socket.release();
-    taker_->HandleNewConnection(&connection);
-  }
-
   HandlerPool pool_;
   UploadThreads uploads_;
   CallRoom room_;
   VolumeServiceDoor volumes_;
   ExtractionServiceDoor extractions_;
   GridServiceDoor grids_;
-  std::unique_ptr<grpc::experimental::ExternalConnectionAcceptor> taker_;
   std::unique_ptr<grpc::Server> server_;
   std::atomic<bool> is_draining_{false};
+  std::unique_ptr<HandOver> hand_over_;
   std::unique_ptr<Acceptor> acceptor_;
   std::unique_ptr<SelfProbe> probe_;
 };

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,16 +22,18 @@ class FloodGuard {
   struct Bound {
     std::uint64_t of_one;       ///< of one connection
     std::uint64_t of_one_then;  ///< the same while `of_all` is exceeded
-    std::uint64_t of_all;       ///< beyond, no connections are taken
+    std::uint64_t of_all;       ///< of all, calls that are being served left out; beyond, no connections are taken
   };
   struct Limits {
     Bound calls, bytes;
-    std::uint64_t message_bytes;  ///< of the largest one: added to bytes.of_one for each call that is held
-    std::uint64_t head_bytes;     ///< of the largest one of a call
+    std::uint64_t message_bytes;   ///< of the largest one: added to bytes.of_one for each call that is held
+    std::uint64_t head_bytes;      ///< of the largest one of a call
+    std::uint64_t unlooked_bytes;  ///< that a connection may send before it is looked at
   };
   struct Open {
     std::string name;         ///< connection_name()
     std::uint64_t bytes = 0;  ///< read from it, ever
+    bool was_ended = false;   ///< and still holds what it held
   };
   struct Verdict {
     std::vector<std::string> harmful;  ///< connections to be ended, by name
@@ -39,22 +42,30 @@ class FloodGuard {
 
   explicit FloodGuard(Limits limits) : limits_(limits) {}
 
-  /// What to do now with the connections that are open. cost: 20 microseconds, and as many for each connection while
-  /// one of them is suspected.
-  Verdict look(const std::vector<Open>& open);
+  /// What to do now with the connections that are open.
+  ///
+  /// served   calls that somebody is working at.
+  /// cost     nothing for connections of which little was read since they were looked at; 20 microseconds for each
+  ///          other one, and 1 for each that is open.
+  Verdict look(const std::vector<Open>& open, std::uint64_t served);
 
-  /// The same of given counts.
-  Verdict judge(const std::vector<Open>& open, std::uint64_t held, const std::vector<ConnectionCounts>& counts);
+  /// The same of given counts. Connections without any are as they were.
+  Verdict judge(const std::vector<Open>& open, std::uint64_t served, const std::vector<ConnectionCounts>& counts);
 
  private:
-  /// A connection when a message was last whole.
-  struct Step {
-    std::uint64_t messages, begun, bytes;
+  /// What is known of a connection.
+  struct Known {
+    struct {
+      std::uint64_t messages = 0, begun = 0, bytes = 0;
+    } step;                            ///< when a message was last whole
+    std::uint64_t looked = 0;          ///< bytes, at its last look
+    std::uint64_t held = 0, vain = 0;  ///< calls; bytes since a message was whole
   };
-  bool is_suspicious(const std::vector<Open>& open) const;
+  std::set<std::string> moved(const std::vector<Open>& open) const;
+  Known known(const Open& one, const ConnectionCounts* counts) const;
 
   const Limits limits_;
-  std::map<std::string, Step> steps_;  ///< by name, of those that were judged
+  std::map<std::string, Known> known_;  ///< by name, of those that are open
 };
 
 }  // namespace geosis::server::rpc

@@ -97,6 +97,28 @@ TEST_F(AcceptorTest, EndsWhatItIsToldToAndNobodyElse) {
   EXPECT_FALSE(has_more(other));
 }
 
+TEST_F(AcceptorTest, APeerWhoseConnectionIsBeingEndedWaitsForThat) {
+  Acceptor acceptor = make({.connections = 3, .connections_per_peer = 3});
+  const Descriptor harmful = connect_to(acceptor.port());
+  EXPECT_FALSE(is_refused(harmful));
+  tell({.harmful = {name_of(harmful)}, .is_full = false});
+  EXPECT_TRUE(is_refused(harmful));
+  tell({});
+  const Descriptor next = connect_to(acceptor.port());
+  EXPECT_FALSE(has_more(next));
+  hang_up();
+  EXPECT_FALSE(is_refused(next));
+}
+
+TEST_F(AcceptorTest, NobodyWaitsForEverForWhatIsBeingEnded) {
+  Acceptor acceptor = make({.connections = 3, .connections_per_peer = 3});
+  const Descriptor harmful = connect_to(acceptor.port());
+  EXPECT_FALSE(is_refused(harmful));
+  tell({.harmful = {name_of(harmful)}, .is_full = false});
+  EXPECT_TRUE(is_refused(harmful));
+  EXPECT_FALSE(is_refused(connect_to(acceptor.port())));
+}
+
 TEST_F(AcceptorTest, LetsOthersWaitWhileItIsFull) {
   Acceptor acceptor = make({.connections = 3, .connections_per_peer = 3});
   const Descriptor first = connect_to(acceptor.port());

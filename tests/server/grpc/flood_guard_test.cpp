@@ -7,23 +7,44 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-constexpr FloodGuard::Limits kLimits{.calls = {.of_one = 100, .of_one_then = 10, .of_all = 500},
+constexpr FloodGuard::Limits kLimits{.calls = {.of_one = 100, .of_one_then = 10, .of_all = 120},
                                      .bytes = {.of_one = 1000, .of_one_then = 800, .of_all = 5000},
                                      .message_bytes = 50,
-                                     .head_bytes = 10};
+                                     .head_bytes = 10,
+                                     .unlooked_bytes = 5};
 
 TEST(FloodGuard, EndsConnectionsThatHoldTooManyCalls) {
   FloodGuard guard(kLimits);
-  const auto verdict = guard.judge({{"a"}, {"b"}, {"c"}}, 250, {{"a", 100}, {"b", 101}, {"c", 49}});
+  const auto verdict = guard.judge({{"a"}, {"b"}, {"c"}}, 82, {{"a", 100}, {"b", 101}, {"c", 1}});
   EXPECT_EQ(verdict.harmful, Names{"b"});
   EXPECT_FALSE(verdict.is_full);
 }
 
-TEST(FloodGuard, IsStricterAndTakesNobodyWhileAllHoldTooManyCalls) {
+TEST(FloodGuard, IsStricterAndTakesNobodyWhileAllHoldTooManyCallsThatNobodyServes) {
   FloodGuard guard(kLimits);
-  const auto verdict = guard.judge({{"a"}, {"b"}, {"c"}}, 501, {{"a", 11}, {"b", 10}, {"c", 0}});
-  EXPECT_EQ(verdict.harmful, Names{"a"});
+  const std::vector<ConnectionCounts> counts = {{"a", 100}, {"b", 10}, {"c", 11}};
+  const auto verdict = guard.judge({{"a"}, {"b"}, {"c"}}, 0, counts);
+  EXPECT_EQ(verdict.harmful, (Names{"a", "c"}));
   EXPECT_TRUE(verdict.is_full);
+  EXPECT_TRUE(guard.judge({{"a"}, {"b"}, {"c"}}, 1, counts).harmful.empty());
+  EXPECT_FALSE(guard.judge({{"a"}, {"b"}, {"c"}}, 1, counts).is_full);
+}
+
+TEST(FloodGuard, RemembersWhatConnectionsHoldThatHaveNotMoved) {
+  FloodGuard guard(kLimits);
+  EXPECT_FALSE(guard.judge({{"a"}, {"b"}}, 0, {{"a", 60}, {"b", 60}}).is_full);
+  EXPECT_TRUE(guard.judge({{"a"}, {"b"}}, 0, {{"b", 61}}).is_full);
+  EXPECT_FALSE(guard.judge({{"b"}}, 0, {}).is_full);  // the other one is gone
+}
+
+TEST(FloodGuard, CountsWhatItEndedUntilThatIsGone) {
+  FloodGuard guard(kLimits);
+  guard.judge({{"a", 9000}}, 0, {{"a", 1, 1, 7}});
+  EXPECT_EQ(guard.judge({{"a", 14'001}}, 0, {{"a", 1, 1, 7}}).harmful, Names{"a"});
+  const auto ended = guard.judge({{"a", 0, true}}, 0, {{"a", 1, 1, 7}});
+  EXPECT_TRUE(ended.harmful.empty());
+  EXPECT_TRUE(ended.is_full);
+  EXPECT_FALSE(guard.judge({{"a", 0, true}}, 0, {}).is_full);
 }
 
 TEST(FloodGuard, EndsConnectionsWhoseBytesComeToNothing) {
@@ -48,11 +69,11 @@ TEST(FloodGuard, IsStricterWhileTheBytesOfAllComeToNothing) {
     open.push_back({name, 0});
     counts.push_back({name, 1, 1, 1});
   }
-  guard.judge(open, 7, counts);
+  guard.judge(open, 0, counts);
   for (auto& one : open) one.bytes = 700;
-  EXPECT_TRUE(guard.judge(open, 7, counts).harmful.empty());
+  EXPECT_TRUE(guard.judge(open, 0, counts).harmful.empty());
   open[3].bytes = 801 + 7 * 20;
-  const auto verdict = guard.judge(open, 7, counts);
+  const auto verdict = guard.judge(open, 0, counts);
   EXPECT_EQ(verdict.harmful, Names{"d"});
   EXPECT_TRUE(verdict.is_full);
 }
@@ -64,7 +85,7 @@ TEST(FloodGuard, TakesAnAddressThatComesBackForAnother) {
 }
 
 TEST(FloodGuard, HasNothingToSayWithoutServers) {
-  const auto verdict = FloodGuard(kLimits).look({{"a", 1 << 30}});
+  const auto verdict = FloodGuard(kLimits).look({{"a", 1 << 30}}, 0);
   EXPECT_TRUE(verdict.harmful.empty());
   EXPECT_FALSE(verdict.is_full);
 }

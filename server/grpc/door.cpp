@@ -14,6 +14,7 @@
 #include "server/grpc/acceptor.h"
 #include "server/grpc/call.h"
 #include "server/grpc/extraction_service.h"
+#include "server/grpc/flood_reports.h"
 #include "server/grpc/grid_service.h"
 #include "server/grpc/hand_over.h"
 #include "server/grpc/self_probe.h"
@@ -82,15 +83,17 @@ void set_limits(grpc::ServerBuilder& builder, const DoorOptions& options) {
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS, 60 * kMinute);
 }
 
-/// Clients that wait for their answers hold what may be open and a few more, whose memory is just given back.
+/// Clients that wait for their answers hold what may be open and a few more, whose memory is just given back. One may
+/// take back a call in the middle of its largest message.
 FloodGuard flood_guard(const DoorOptions& options) {
   const auto open = static_cast<std::uint64_t>(options.streams_per_connection);
-  return FloodGuard(
-      {.calls = {.of_one = 16 * open, .of_one_then = 2 * open, .of_all = 32 * open},
-       .bytes = {.of_one = 2 * kLargestMessage, .of_one_then = 2 * kLargestMessage, .of_all = kMemory / 4},
-       .message_bytes = kLargestMessage,
-       .head_bytes = 2 * kLargestMetadata,
-       .unlooked_bytes = 16 * 1024});
+  return FloodGuard({.calls = {.of_one = 16 * open, .of_one_then = 2 * open, .of_all = 32 * open},
+                     .bytes = {.of_one = kLargestMessage + kLargestMessage / 4,
+                               .of_one_then = 2 * kLargestMessage,
+                               .of_all = kMemory / 4},
+                     .message_bytes = kLargestMessage,
+                     .head_bytes = 2 * kLargestMetadata,
+                     .unlooked_bytes = 16 * 1024});
 }
 
 /// A way into a server that is not built yet. gRPC lets one socket in at a time by each.
@@ -122,7 +125,10 @@ class Door::Running {
               .reader_patience = options.reader_patience},
         volumes_(room_),
         extractions_(room_),
-        grids_(room_) {
+        grids_(room_),
+        floods_(
+            [&gate = parts.gate](std::size_t count, const std::string& last) { gate.ended_for_flooding(count, last); },
+            parts.give_back) {
     set_up_process();
     tell_to(parts.say);
   }
@@ -151,10 +157,15 @@ class Door::Running {
     acceptor_ = std::make_unique<Acceptor>(
         *std::move(listener), Acceptor::Limits{options.connections, options.connections_per_peer},
         [this](Descriptor socket) { hand_over_->hand(std::move(socket)); },
-        [this, guard = flood_guard(options)](const auto& open) mutable { return guard.look(open, calls()); },
+        [this, guard = flood_guard(options)](const auto& open) mutable {
+          auto verdict = guard.look(open, calls());
+          floods_.note(verdict.harmful, FloodReports::Clock::now());
+          return verdict;
+        },
         [this] {
           room_.open.end_late_ones();
           hand_over_->end_stuck();
+          floods_.tick(FloodReports::Clock::now());
         });
     probe_ = std::make_unique<SelfProbe>(probe_target(options.listen, acceptor_->port()), secured->own_client,
                                          options.probe_interval, [this] { return acceptor_->may_be_full(); });
@@ -198,6 +209,7 @@ class Door::Running {
   GridServiceDoor grids_;
   std::unique_ptr<grpc::Server> server_;
   std::atomic<bool> is_draining_{false};
+  FloodReports floods_;  // of the acceptor's thread
   std::unique_ptr<HandOver> hand_over_;
   std::unique_ptr<Acceptor> acceptor_;
   std::unique_ptr<SelfProbe> probe_;

@@ -41,6 +41,7 @@ class Door {
     CallGate& gate;
     Slots& uploads;                                         ///< threads for uploads, shared with other doors
     std::function<void(const std::string& line)> say = {};  ///< what gRPC has to say; from any thread
+    std::function<void()> give_back = [] {};                ///< called when much memory has just become free
   };
 
   /// Listens and serves until stop(). SIGTERM and the like must be blocked before: gRPC's threads inherit the mask.

@@ -64,8 +64,8 @@ FloodGuard::Verdict FloodGuard::judge(const std::vector<Open>& open, std::uint64
   const std::uint64_t most_calls = has_many_calls ? limits_.calls.of_one_then : limits_.calls.of_one;
   for (const Open& one : open) {
     const Known& now = known_.at(one.name);
-    const std::uint64_t most_bytes =
-        has_many_bytes ? limits_.bytes.of_one_then : limits_.bytes.of_one + limits_.message_bytes * now.held;
+    const std::uint64_t rightful = limits_.bytes.of_one + limits_.message_bytes * now.held;
+    const std::uint64_t most_bytes = has_many_bytes ? std::min(rightful, limits_.bytes.of_one_then) : rightful;
     if (!one.was_ended && (now.held > most_calls || now.vain > most_bytes)) verdict.harmful.push_back(one.name);
   }
   return verdict;

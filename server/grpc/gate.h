@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 
@@ -36,6 +37,12 @@ class CallGate {
   virtual Result<std::string> admit(const CallHead& head) = 0;
   /// Once for each call, when it is over.
   virtual void answered(const AnsweredCall& answered) = 0;
+  /// Connections that were ended for flooding the door since it was last said, at most once a second; and the address
+  /// of one of them.
+  virtual void ended_for_flooding(std::size_t connections, const std::string& last) {
+    static_cast<void>(connections);
+    static_cast<void>(last);
+  }
   /// What refusals for lack of room say in RetryInfo.
   virtual int retry_after_seconds() const { return 1; }
 };

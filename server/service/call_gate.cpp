@@ -54,4 +54,10 @@ void KeyedCallGate::answered(const rpc::AnsweredCall& answered) {
   log_.write(answered.status == kInternal ? LogLevel::error : LogLevel::info, "call", fields);
 }
 
+void KeyedCallGate::ended_for_flooding(std::size_t connections, const std::string& last) {
+  metrics_.add("geosis_grpc_floods_total", {}, static_cast<double>(connections));
+  log_.write(LogLevel::warning, "connections ended for flooding",
+             {{"connections", static_cast<std::int64_t>(connections)}, {"last", last}});
+}
+
 }  // namespace geosis::server

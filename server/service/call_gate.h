@@ -20,6 +20,7 @@ class KeyedCallGate final : public rpc::CallGate {
 
   Result<std::string> admit(const rpc::CallHead& head) override;
   void answered(const rpc::AnsweredCall& answered) override;
+  void ended_for_flooding(std::size_t connections, const std::string& last) override;
   int retry_after_seconds() const override;
 
  private:

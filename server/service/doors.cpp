@@ -57,7 +57,7 @@ Result<std::unique_ptr<http::Front>> start_front(const ServeOptions& options, co
 }
 
 Result<std::unique_ptr<rpc::Door>> start_grpc(const ServeOptions& options, const Tenants& tenants, rpc::CallGate& gate,
-                                              Slots& uploads, Log& log) {
+                                              Slots& uploads, Log& log, HeapTrimmer& trim) {
   if (options.grpc.empty()) return std::unique_ptr<rpc::Door>();
   raise_descriptor_limit();
   rpc::DoorOptions door;
@@ -77,7 +77,8 @@ Result<std::unique_ptr<rpc::Door>> start_grpc(const ServeOptions& options, const
                               .say =
                                   [&log](const std::string& line) {
                                     log.write(LogLevel::debug, "grpc", {{"says", line}});
-                                  }});
+                                  },
+                              .give_back = [&trim] { trim(); }});
   if (started || started.error().code != ErrorCode::unavailable) return started;
   return Error{ErrorCode::unavailable,
                started.error().message + "; --grpc HOST:PORT takes another address for gRPC, --grpc off none"};

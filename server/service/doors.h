@@ -11,6 +11,7 @@
 #include "server/http/routes.h"
 #include "server/jobs/slots.h"
 #include "server/log/log.h"
+#include "server/service/heap.h"
 #include "server/service/serve.h"
 #include "server/service/tenants.h"
 
@@ -24,7 +25,7 @@ Result<std::unique_ptr<http::Front>> start_front(const ServeOptions& options, co
 
 /// Null when the options want none.
 Result<std::unique_ptr<rpc::Door>> start_grpc(const ServeOptions& options, const Tenants& tenants, rpc::CallGate& gate,
-                                              Slots& uploads, Log& log);
+                                              Slots& uploads, Log& log, HeapTrimmer& trim);
 
 /// Metrics and probes. Null where there is none.
 Result<std::unique_ptr<http::Front>> start_admin(const ServeOptions& options, const http::HealthChecks& checks,

@@ -165,7 +165,7 @@ Result<void> serve(const ServeOptions& options) {
   Slots uploads(kUploadThreads);
 
   KeyedCallGate call_gate(*keys, queue, log, metrics);
-  const auto grpc = start_grpc(options, tenants, call_gate, uploads, log);
+  const auto grpc = start_grpc(options, tenants, call_gate, uploads, log, trim);
   if (!grpc) return grpc.error();
   if (*grpc) health.ask_also([&door = **grpc] { return door.not_alive(); });
 

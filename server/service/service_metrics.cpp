@@ -32,6 +32,7 @@ std::vector<Metrics::Family> service_families() {
           {"geosis_grpc_sent_bytes_total", Kind::counter, "Bytes of messages sent."},
           {"geosis_grpc_connections", Kind::gauge, "Connections of the gRPC door that are open."},
           {"geosis_grpc_calls", Kind::gauge, "Calls that run."},
+          {"geosis_grpc_floods_total", Kind::counter, "Connections of the gRPC door that were ended for flooding it."},
           {"geosis_jobs_waiting", Kind::gauge, "Jobs that wait for a worker or for memory."},
           {"geosis_jobs_running", Kind::gauge, "Jobs that run."},
           {"geosis_jobs_total", Kind::counter, "Jobs that have ended."},

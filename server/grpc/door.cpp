@@ -13,6 +13,7 @@
 
 #include "server/grpc/acceptor.h"
 #include "server/grpc/call.h"
+#include "server/grpc/door_tls.h"
 #include "server/grpc/extraction_service.h"
 #include "server/grpc/flood_reports.h"
 #include "server/grpc/grid_service.h"
@@ -135,7 +136,7 @@ class Door::Running {
   ~Running() { stop(); }
 
   Result<void> start(const DoorOptions& options) {
-    auto secured = door_credentials(options.tls);
+    auto secured = door_credentials(options.certificates);
     if (!secured) return std::move(secured).error();
     auto listener = Listener::open(options.listen);
     if (!listener) return std::move(listener).error();
@@ -147,12 +148,9 @@ class Door::Running {
     std::vector<HandOver::Lane> lanes;
     for (std::size_t n = 0; n < kLanes; ++n) lanes.push_back(add_lane(builder, secured->server));
     server_ = builder.BuildAndStart();
-    if (!server_ && !options.tls.certificate.empty()) {
-      return Error{ErrorCode::invalid_argument,
-                   "TLS: gRPC does not take " + options.tls.certificate + " and " + options.tls.key};
-    }
     if (!server_) return Error{ErrorCode::internal, "gRPC did not start"};
     set_serving(true);
+    certificates_ = std::move(secured->files);
     hand_over_ = std::make_unique<HandOver>(std::move(lanes), kLanePatience);
     acceptor_ = std::make_unique<Acceptor>(
         *std::move(listener), Acceptor::Limits{options.connections, options.connections_per_peer},
@@ -166,6 +164,7 @@ class Door::Running {
           room_.open.end_late_ones();
           hand_over_->end_stuck();
           floods_.tick(FloodReports::Clock::now());
+          if (certificates_) certificates_->renew();
         });
     probe_ = std::make_unique<SelfProbe>(probe_target(options.listen, acceptor_->port()), secured->own_client,
                                          options.probe_interval, [this] { return acceptor_->may_be_full(); });
@@ -207,6 +206,7 @@ class Door::Running {
   VolumeServiceDoor volumes_;
   ExtractionServiceDoor extractions_;
   GridServiceDoor grids_;
+  std::unique_ptr<MirroredCertificates> certificates_;
   std::unique_ptr<grpc::Server> server_;
   std::atomic<bool> is_draining_{false};
   FloodReports floods_;  // of the acceptor's thread

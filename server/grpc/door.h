@@ -9,15 +9,15 @@
 
 #include "engine/base/result.h"
 #include "server/app/services.h"
-#include "server/grpc/door_tls.h"
 #include "server/grpc/gate.h"
 #include "server/jobs/slots.h"
+#include "server/net/tls_certificates.h"
 
 namespace geosis::server::rpc {
 
 struct DoorOptions {
-  std::string listen = "127.0.0.1:8081";  ///< "host:port"; port 0 = any that is free
-  TlsFiles tls = {};                      ///< empty = plain HTTP/2
+  std::string listen = "127.0.0.1:8081";    ///< "host:port"; port 0 = any that is free
+  TlsCertificates* certificates = nullptr;  ///< outlive the door; null = plain HTTP/2
   std::size_t connections = 256, connections_per_peer = 64;
   int streams_per_connection = 64;
   std::size_t handler_threads = 8;

@@ -30,10 +30,10 @@ class Front::Running {
 
 Result<std::unique_ptr<Front>> Front::start(FrontOptions options, Router routes) {
   std::unique_ptr<TlsContext> tls;
-  if (!options.tls_certificate.empty() || !options.tls_key.empty()) {
-    auto loaded = TlsContext::load(options.tls_certificate, options.tls_key);
-    if (!loaded) return std::move(loaded).error();
-    tls = *std::move(loaded);
+  if (options.certificates != nullptr) {
+    auto made = TlsContext::make(*options.certificates);
+    if (!made) return std::move(made).error();
+    tls = *std::move(made);
   }
   auto listener = Listener::open(options.listen);
   if (!listener) return std::move(listener).error();

@@ -11,12 +11,13 @@
 #include "server/http/middleware.h"
 #include "server/http/router.h"
 #include "server/jobs/slots.h"
+#include "server/net/tls_certificates.h"
 
 namespace geosis::server::http {
 
 struct FrontOptions {
-  std::string listen = "127.0.0.1:8080";           ///< "host:port"; port 0 = any that is free
-  std::string tls_certificate = {}, tls_key = {};  ///< files in PEM; empty = plain HTTP
+  std::string listen = "127.0.0.1:8080";    ///< "host:port"; port 0 = any that is free
+  TlsCertificates* certificates = nullptr;  ///< outlive the front; null = plain HTTP
   Limits limits = {};
   CorsOptions cors = {};
   std::size_t handler_threads = 8;

@@ -10,6 +10,8 @@
 #include <openssl/ssl.h>
 #include <sys/epoll.h>
 
+#include "server/net/pem.h"
+
 namespace geosis::server::http {
 namespace {
 
@@ -111,10 +113,19 @@ struct TlsContext::Settings {
   std::unique_ptr<SSL_CTX, decltype(&SSL_CTX_free)> context{SSL_CTX_new(TLS_server_method()), &SSL_CTX_free};
 };
 
-TlsContext::TlsContext(std::unique_ptr<Settings> settings) : settings_(std::move(settings)) {}
+TlsContext::TlsContext(TlsCertificates& certificates, std::shared_ptr<const TlsTexts> texts,
+                       std::unique_ptr<Settings> settings)
+    : certificates_(certificates), texts_(std::move(texts)), settings_(std::move(settings)) {}
 TlsContext::~TlsContext() = default;
 
-Result<std::unique_ptr<TlsContext>> TlsContext::load(const std::string& certificate, const std::string& key) {
+Result<std::unique_ptr<TlsContext>> TlsContext::make(TlsCertificates& certificates) {
+  auto texts = certificates.latest();
+  auto settings = settings_of(*texts);
+  if (!settings) return std::move(settings).error();
+  return std::unique_ptr<TlsContext>(new TlsContext(certificates, std::move(texts), *std::move(settings)));
+}
+
+Result<std::unique_ptr<TlsContext::Settings>> TlsContext::settings_of(const TlsTexts& texts) {
   ERR_clear_error();
   auto settings = std::make_unique<Settings>();
   SSL_CTX* const context = settings->context.get();
@@ -126,14 +137,26 @@ Result<std::unique_ptr<TlsContext>> TlsContext::load(const std::string& certific
   SSL_CTX_set_mode(context,
                    SSL_MODE_ENABLE_PARTIAL_WRITE | SSL_MODE_ACCEPT_MOVING_WRITE_BUFFER | SSL_MODE_RELEASE_BUFFERS);
   SSL_CTX_set_alpn_select_cb(context, choose_protocol, nullptr);
-  if (SSL_CTX_use_certificate_chain_file(context, certificate.c_str()) != 1)
-    return Error{ErrorCode::invalid_argument, "TLS certificate " + certificate + ": " + last_problem()};
-  if (SSL_CTX_use_PrivateKey_file(context, key.c_str(), SSL_FILETYPE_PEM) != 1)
-    return Error{ErrorCode::invalid_argument, "TLS key " + key + ": " + last_problem()};
-  return std::unique_ptr<TlsContext>(new TlsContext(std::move(settings)));
+  const auto chain = read_certificates(texts.certificate);
+  const KeyPointer key = read_key(texts.key);
+  bool is_taken = !chain.empty() && SSL_CTX_use_certificate(context, chain.front().get()) == 1 && key &&
+                  SSL_CTX_use_PrivateKey(context, key.get()) == 1;
+  for (std::size_t n = 1; n < chain.size() && is_taken; ++n) {
+    is_taken = SSL_CTX_add1_chain_cert(context, chain[n].get()) == 1;
+  }
+  if (!is_taken) return Error{ErrorCode::invalid_argument, "TLS: the certificate is not taken: " + last_problem()};
+  return settings;
 }
 
-std::unique_ptr<Channel> TlsContext::accept(Descriptor socket) const {
+void TlsContext::renew() {
+  auto latest = certificates_.latest();
+  if (latest == texts_) return;
+  texts_ = std::move(latest);
+  if (auto settings = settings_of(*texts_)) settings_ = *std::move(settings);  // sessions keep the settings they have
+}
+
+std::unique_ptr<Channel> TlsContext::accept(Descriptor socket) {
+  renew();
   Session session(SSL_new(settings_->context.get()), &SSL_free);
   if (!session) return nullptr;
   return std::make_unique<TlsChannel>(std::move(socket), std::move(session));

@@ -1,27 +1,31 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
 #include "engine/base/result.h"
 #include "server/http/channel.h"
+#include "server/net/tls_certificates.h"
 
 namespace geosis::server::http {
 
 /// A certificate with its key, and what connections behind it have in common: TLS 1.2 or 1.3, HTTP/1.1 alone.
 class TlsContext {
  public:
-  /// certificate, key   files in PEM; the certificate's file holds those that lead to it as well.
-  /// errors             invalid_argument: unreadable, or the key is another certificate's.
-  static Result<std::unique_ptr<TlsContext>> load(const std::string& certificate, const std::string& key);
+  /// errors   invalid_argument: OpenSSL does not take them.
+  static Result<std::unique_ptr<TlsContext>> make(TlsCertificates& certificates);
   ~TlsContext();
 
-  /// The channel greets its client with the first receive(). The context outlives it.
-  std::unique_ptr<Channel> accept(Descriptor socket) const;
+  /// The channel greets its client with the first receive(), with the latest certificate.
+  std::unique_ptr<Channel> accept(Descriptor socket);
 
  private:
   struct Settings;
-  explicit TlsContext(std::unique_ptr<Settings> settings);
+  TlsContext(TlsCertificates& certificates, std::shared_ptr<const TlsTexts> texts, std::unique_ptr<Settings> settings);
+  static Result<std::unique_ptr<Settings>> settings_of(const TlsTexts& texts);
+  void renew();
+
+  TlsCertificates& certificates_;
+  std::shared_ptr<const TlsTexts> texts_;  ///< those of the settings, or refused
   std::unique_ptr<Settings> settings_;
 };
 

@@ -17,8 +17,6 @@ constexpr std::size_t kHttpToGrpcConnections = 16;
 http::FrontOptions front_options(const ServeOptions& options) {
   http::FrontOptions front;
   front.listen = options.listen;
-  front.tls_certificate = options.tls_certificate;
-  front.tls_key = options.tls_key;
   front.limits.upload_bytes = options.max_body_bytes;
   // Some descriptors stay for the store: a client must not keep others' files from being opened.
   const std::size_t descriptors = raise_descriptor_limit();
@@ -47,24 +45,39 @@ http::Router routes_of(const Tenants& tenants, http::ReplyCache& kept, const htt
 
 }  // namespace
 
+Result<std::unique_ptr<TlsCertificates>> open_tls_certificates(const ServeOptions& options, Log& log) {
+  if (options.tls_certificate.empty()) return std::unique_ptr<TlsCertificates>();
+  return TlsCertificates::read(
+      {.certificate = options.tls_certificate,
+       .key = options.tls_key,
+       .client_authorities = options.grpc_client_authorities},
+      [&log](const std::optional<Error>& problem) {
+        if (problem)
+          log.write(LogLevel::warning, "certificates not renewed", {{"problem", problem->message}});
+        else
+          log.write(LogLevel::info, "certificates renewed", {});
+      });
+}
+
 Result<std::unique_ptr<http::Front>> start_front(const ServeOptions& options, const Tenants& tenants,
                                                  http::ReplyCache& kept, const http::HealthChecks& checks,
-                                                 http::Middleware& gate, Slots& uploads) {
+                                                 http::Middleware& gate, Slots& uploads,
+                                                 TlsCertificates* certificates) {
   http::FrontOptions door = front_options(options);
+  door.certificates = certificates;
   door.middleware = &gate;
   door.uploads = &uploads;
   return http::Front::start(door, routes_of(tenants, kept, checks, options.page));
 }
 
 Result<std::unique_ptr<rpc::Door>> start_grpc(const ServeOptions& options, const Tenants& tenants, rpc::CallGate& gate,
-                                              Slots& uploads, Log& log, HeapTrimmer& trim) {
+                                              Slots& uploads, Log& log, HeapTrimmer& trim,
+                                              TlsCertificates* certificates) {
   if (options.grpc.empty()) return std::unique_ptr<rpc::Door>();
   raise_descriptor_limit();
   rpc::DoorOptions door;
   door.listen = options.grpc;
-  door.tls = {.certificate = options.tls_certificate,
-              .key = options.tls_key,
-              .client_authorities = options.grpc_client_authorities};
+  door.certificates = certificates;
   door.upload_bytes = options.max_body_bytes;
   door.connections = std::max(options.connections / kHttpToGrpcConnections, std::size_t{1});
   door.connections_per_peer = std::max(options.connections_per_peer / kHttpToGrpcConnections, std::size_t{1});

@@ -142,6 +142,8 @@ Result<void> serve(const ServeOptions& options) {
   if (!keys) return keys.error();
   StopSignals signals;  // before the first thread starts
   Log log(options.log_format, options.log_level);
+  const auto certificates = open_tls_certificates(options, log);
+  if (!certificates) return certificates.error();
   Metrics metrics(service_families());
   auto opened = open_dir_store(options.store);
   if (!opened) return std::move(opened).error();
@@ -165,13 +167,13 @@ Result<void> serve(const ServeOptions& options) {
   Slots uploads(kUploadThreads);
 
   KeyedCallGate call_gate(*keys, queue, log, metrics);
-  const auto grpc = start_grpc(options, tenants, call_gate, uploads, log, trim);
+  const auto grpc = start_grpc(options, tenants, call_gate, uploads, log, trim, certificates->get());
   if (!grpc) return grpc.error();
   if (*grpc) health.ask_also([&door = **grpc] { return door.not_alive(); });
 
   RequestGate gate(*keys, queue, log, metrics);
   http::ReplyCache kept(kKeptBytes);
-  auto front = start_front(options, tenants, kept, checks, gate, uploads);
+  auto front = start_front(options, tenants, kept, checks, gate, uploads, certificates->get());
   if (!front) return std::move(front).error();
   const auto text = [&] {
     update_gauges(metrics, queue, memory);

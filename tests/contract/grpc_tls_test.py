@@ -6,6 +6,7 @@ import socket
 import ssl
 import subprocess
 import tempfile
+import time
 import unittest
 import urllib.request
 from pathlib import Path
@@ -118,6 +119,63 @@ class ClientsThatAreKnown(WithDoor):
         with urllib.request.urlopen(f"https://{self.service.address}/livez",
                                     context=ssl.create_default_context(cafile=SERVER[0])) as answer:
             self.assertEqual(answer.status, 200)
+
+
+class Renewal(unittest.TestCase):
+    def setUp(self):
+        self.files = FOLDER / "renewed.pem", FOLDER / "renewed.key", FOLDER / "renewed-authorities.pem"
+        self.renew(SERVER)
+        self.trust(CLIENTS)
+
+    def renew(self, certificate, key=None):
+        """Each file in one step, as renewing programs do it."""
+        for source, target in zip((certificate[0], key or certificate[1]), self.files):
+            (FOLDER / "next").write_bytes(source.read_bytes())
+            (FOLDER / "next").rename(target)
+
+    def trust(self, authority):
+        self.files[2].write_bytes(authority[0].read_bytes())
+
+    def served(self, service):
+        """The certificates that HTTP and gRPC show now."""
+        return [ssl.get_server_certificate(address.split(":"), timeout=20) for address in (service.address, service.grpc_address)]
+
+    def comes_true(self, question, seconds=20):
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            if question():
+                return True
+            time.sleep(0.2)
+        return False
+
+    def test_files_are_taken_while_both_doors_are_open(self):
+        other, first = CERTIFICATES.own("other-server"), SERVER[0].read_text()
+        flags = ("--grpc-client-ca", str(self.files[2]))
+        with Service(FOLDER / "renewal", "--grpc", "127.0.0.1:0", "--admin", "", "--tls-cert", str(self.files[0]), "--tls-key",
+                     str(self.files[1]), "--probe-seconds", "1", *flags) as service:
+            self.assertEqual(self.served(service), [first, first])
+            # Half of a renewal is not taken, even if it stays so.
+            self.renew(other, key=SERVER[1])
+            time.sleep(7)
+            self.assertEqual(self.served(service), [first, first])
+            self.renew(other)
+            second = other[0].read_text()
+            self.assertTrue(self.comes_true(lambda: self.served(service) == [second, second]))
+
+            known = CERTIFICATES.signed("later-known", OTHERS)
+            def is_known():
+                door = secure(service.grpc_address, other[0], known)
+                with door.channel:
+                    try:
+                        return door.volume_stub.ListVolumes(volume_pb2.ListVolumesRequest(), timeout=5) is not None
+                    except grpc.RpcError:
+                        return False
+            self.assertFalse(is_known())
+            self.trust(OTHERS)
+            self.assertTrue(self.comes_true(is_known))
+            # The door's own questions were answered all the while.
+            with urllib.request.urlopen(f"https://{service.address}/livez", context=ssl.create_default_context(cafile=other[0])) as answer:
+                self.assertEqual(answer.status, 200)
 
 
 class Refusals(unittest.TestCase):

@@ -1,6 +1,7 @@
-#include "server/grpc/certificate.h"
+#include "server/net/pem.h"
 
-#include <memory>
+#include <cstdint>
+#include <utility>
 
 #include <openssl/bio.h>
 #include <openssl/err.h>
@@ -9,14 +10,12 @@
 #include <openssl/rand.h>
 #include <openssl/x509v3.h>
 
-namespace geosis::server::rpc {
+namespace geosis::server {
 namespace {
 
 constexpr long kDay = 24 * 3600;
 constexpr long kCentury = 36'500 * kDay;
 
-using Key = std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)>;
-using Certificate = std::unique_ptr<X509, decltype(&X509_free)>;
 using Bytes = std::unique_ptr<BIO, decltype(&BIO_free)>;
 
 std::string text_of(BIO* bytes) {
@@ -29,6 +28,10 @@ bool add_address(X509* certificate) {
   const std::unique_ptr<X509_EXTENSION, decltype(&X509_EXTENSION_free)> address(
       X509V3_EXT_conf_nid(nullptr, nullptr, NID_subject_alt_name, "IP:127.0.0.1"), &X509_EXTENSION_free);
   return address && X509_add_ext(certificate, address.get(), -1) == 1;
+}
+
+Bytes bytes_of(const std::string& text) {
+  return {BIO_new_mem_buf(text.data(), static_cast<int>(text.size())), &BIO_free};
 }
 
 /// Signed by the key itself.
@@ -49,8 +52,8 @@ bool fill(X509* certificate, EVP_PKEY* key, const std::string& name) {
 }  // namespace
 
 Result<SignedKey> make_signed_key(const std::string& name) {
-  const Key key(EVP_EC_gen("P-256"), &EVP_PKEY_free);
-  const Certificate certificate(X509_new(), &X509_free);
+  const KeyPointer key(EVP_EC_gen("P-256"), &EVP_PKEY_free);
+  const CertificatePointer certificate(X509_new(), &X509_free);
   const Bytes key_text(BIO_new(BIO_s_mem()), &BIO_free), certificate_text(BIO_new(BIO_s_mem()), &BIO_free);
   const bool is_made =
       key && certificate && key_text && certificate_text && fill(certificate.get(), key.get(), name) &&
@@ -60,14 +63,26 @@ Result<SignedKey> make_signed_key(const std::string& name) {
   return SignedKey{text_of(key_text.get()), text_of(certificate_text.get())};
 }
 
-std::size_t count_certificates(const std::string& pem) {
-  const Bytes bytes(BIO_new_mem_buf(pem.data(), static_cast<int>(pem.size())), &BIO_free);
+std::vector<CertificatePointer> read_certificates(const std::string& pem) {
+  const Bytes bytes = bytes_of(pem);
   ERR_clear_error();
-  std::size_t count = 0;
-  while (Certificate(PEM_read_bio_X509(bytes.get(), nullptr, nullptr, nullptr), &X509_free)) ++count;
+  std::vector<CertificatePointer> all;
+  for (;;) {
+    CertificatePointer next(PEM_read_bio_X509(bytes.get(), nullptr, nullptr, nullptr), &X509_free);
+    if (!next) break;
+    all.push_back(std::move(next));
+  }
   const bool is_whole = ERR_GET_REASON(ERR_peek_last_error()) == PEM_R_NO_START_LINE;
   ERR_clear_error();
-  return is_whole ? count : 0;
+  if (!is_whole) all.clear();
+  return all;
 }
 
-}  // namespace geosis::server::rpc
+KeyPointer read_key(const std::string& pem) {
+  const auto no_password = [](char*, int, int, void*) { return -1; };  // else the terminal is asked for one
+  KeyPointer key(PEM_read_bio_PrivateKey(bytes_of(pem).get(), nullptr, no_password, nullptr), &EVP_PKEY_free);
+  ERR_clear_error();
+  return key;
+}
+
+}  // namespace geosis::server

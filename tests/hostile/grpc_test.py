@@ -23,6 +23,7 @@ UNKNOWN = "/geosis.v1.VolumeService/Nothing"
 STREAM = "/geosis.v1.ExtractionService/StreamLods"
 PATIENCE = 2
 MOST_GROWN = 512 << 20  # bytes; without a guard resets took 900 MB in two seconds, and endless heads twice what was sent
+LONGEST_ANSWER = 10  # seconds, to others; a client of a flood's address waits for what of it is being ended
 takes_long = unittest.skipIf(os.environ.get("HOSTILE_QUICK"), "HOSTILE_QUICK is set")
 
 
@@ -89,22 +90,49 @@ class Flood:
             thread.join()
 
 
+class Honest:
+    """Somebody of the same address who asks for the door's health all the while, each time over a new connection."""
+
+    def __init__(self, address):
+        self._slowest = 0
+        self._is_stopping = False
+        self._thread = threading.Thread(target=self._run, args=(address,))
+        self._thread.start()
+
+    def _run(self, address):
+        while not self._is_stopping:
+            start = time.monotonic()
+            is_serving(address, 2 * LONGEST_ANSWER)
+            self._slowest = max(self._slowest, time.monotonic() - start)
+            time.sleep(0.05)
+
+    def stop(self):
+        """How long an answer took at most, in seconds."""
+        self._is_stopping = True
+        self._thread.join()
+        return self._slowest
+
+
 class Harm(unittest.TestCase):
     def judge(self, name, flood):
-        """The server answers others while the flood goes on, and after it; prints what it cost."""
+        """Both doors answer others while the flood goes on, and after it; prints what it cost."""
         before, peak, asked, answered = memory_of(SERVICE.process), 0, 0, 0
+        honest = Honest(SERVICE.grpc_address)
         while flood.is_running():
             peak = max(peak, memory_of(SERVICE.process))
             asked += 1
             answered += ask(SERVICE.address, "/version")[0] == 200
             time.sleep(0.05)
         flood.wait()
+        slowest = honest.stop()
         self.assertIsNone(SERVICE.process.poll(), name)
         self.assertTrue(is_serving(SERVICE.grpc_address, 20), f"{name}: the door does not answer any more")
         self.assertEqual(answered, asked, f"{name}: HTTP suffered")
+        self.assertLess(slowest, LONGEST_ANSWER, f"{name}: clients of the door suffered")
         time.sleep(1)
         after = memory_of(SERVICE.process)
-        print(f"{name}: sent {flood.sent >> 20} MB; memory +{(peak - before) >> 20} MB at most, +{(after - before) >> 20} MB after")
+        print(f"{name}: sent {flood.sent >> 20} MB; memory +{(peak - before) >> 20} MB at most, +{(after - before) >> 20} MB after; "
+              f"others waited {slowest:.1f} s at most")
         self.assertLess(peak - before, MOST_GROWN, name)
 
     def flood(self, pieces, connections=4, opening=b""):

@@ -13,12 +13,12 @@ call() { curl -fsS ${KEY:+-H "Authorization: Bearer $KEY"} "$@"; }
 # The address that an answer's Location header names.
 location() { call -o /dev/null -D - "$@" | tr -d '\r' | sed -n 's/^[Ll]ocation: *//p'; }
 
-volume=$server$(location --data-binary @"$survey" -H 'Content-Type: application/octet-stream' "$server/v1/volumes?name=survey")
+volume=$server$(location -X POST -T "$survey" "$server/v1/volumes?name=survey")
 echo "volume      $volume"
 
 grid=given
 if [ -n "${NODES:-}" ]; then
-  grid=$(location --data-binary @"$NODES" -H 'Content-Type: application/octet-stream' "$volume/grids?dtype=float64")
+  grid=$(location -X POST -T "$NODES" "$volume/grids?dtype=float64")
   grid=${grid##*/}
   echo "grid        $grid"
 fi

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "engine/base/vec3.h"
-#include "engine/missing/bit_lines.h"
 #include "engine/missing/brick_row.h"
 #include "engine/missing/brick_views.h"
+#include "engine/missing/gaps/bit_lines.h"
 #include "engine/volume/grid.h"
 
 namespace geosis {

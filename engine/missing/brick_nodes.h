@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "engine/missing/bit_lines.h"
 #include "engine/missing/brick_row.h"
+#include "engine/missing/gaps/bit_lines.h"
 #include "engine/volume/brick_layout.h"
 
 namespace geosis {

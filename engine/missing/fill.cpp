@@ -11,14 +11,14 @@
 #include "engine/base/parallel.h"
 #include "engine/missing/axis_barycentre.h"
 #include "engine/missing/brick_nodes.h"
-#include "engine/missing/distance_limit.h"
+#include "engine/missing/file/fill_writer.h"
 #include "engine/missing/fill_gaps.h"
 #include "engine/missing/fill_share.h"
-#include "engine/missing/fill_writer.h"
+#include "engine/missing/gaps/distance_limit.h"
+#include "engine/missing/gaps/outline.h"
+#include "engine/missing/gaps/survey_scan.h"
 #include "engine/missing/linear_fill.h"
-#include "engine/missing/outline.h"
 #include "engine/missing/solve_gap.h"
-#include "engine/missing/survey_scan.h"
 
 namespace geosis {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "engine/base/progress.h"
 #include "engine/base/result.h"
+#include "engine/missing/file/filled_volume.h"
 #include "engine/missing/fill_options.h"
-#include "engine/missing/filled_volume.h"
 #include "engine/volume/bricks.h"
 
 namespace geosis {

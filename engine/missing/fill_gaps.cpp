@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "engine/base/parallel.h"
-#include "engine/missing/gap_reader.h"
-#include "engine/missing/gaps.h"
+#include "engine/missing/gaps/gap_reader.h"
+#include "engine/missing/gaps/gaps.h"
 #include "engine/volume/brick_layout.h"
 
 namespace geosis {

@@ -3,10 +3,10 @@
 #include "engine/base/progress.h"
 #include "engine/base/result.h"
 #include "engine/missing/axis_barycentre.h"
-#include "engine/missing/bit_lines.h"
+#include "engine/missing/file/fill_writer.h"
 #include "engine/missing/fill_share.h"
-#include "engine/missing/fill_writer.h"
-#include "engine/missing/gap_jobs.h"
+#include "engine/missing/gaps/bit_lines.h"
+#include "engine/missing/gaps/gap_jobs.h"
 #include "engine/missing/solve_gap.h"
 #include "engine/volume/bricks.h"
 

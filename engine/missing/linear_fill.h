@@ -4,8 +4,8 @@
 
 #include "engine/base/progress.h"
 #include "engine/missing/axis_barycentre.h"
-#include "engine/missing/bit_lines.h"
-#include "engine/missing/fill_writer.h"
+#include "engine/missing/file/fill_writer.h"
+#include "engine/missing/gaps/bit_lines.h"
 #include "engine/volume/brick_layout.h"
 
 namespace geosis {

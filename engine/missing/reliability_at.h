@@ -7,7 +7,7 @@
 #include "engine/base/progress.h"
 #include "engine/base/result.h"
 #include "engine/base/vec3.h"
-#include "engine/missing/filled_volume.h"
+#include "engine/missing/file/filled_volume.h"
 
 namespace geosis {
 

@@ -4,9 +4,9 @@
 #include <memory>
 #include <utility>
 
-#include "engine/missing/inverse_distance.h"
-#include "engine/missing/steered_plate.h"
-#include "engine/missing/thin_plate.h"
+#include "engine/missing/inverse_distance/inverse_distance.h"
+#include "engine/missing/plate/steered_plate.h"
+#include "engine/missing/plate/thin_plate.h"
 
 namespace geosis {
 namespace {

@@ -6,8 +6,8 @@
 #include "engine/base/result.h"
 #include "engine/base/vec3.h"
 #include "engine/missing/fill_options.h"
-#include "engine/missing/gap_box.h"
-#include "engine/missing/gap_jobs.h"
+#include "engine/missing/gaps/gap_box.h"
+#include "engine/missing/gaps/gap_jobs.h"
 #include "engine/volume/bricks.h"
 
 namespace geosis {

@@ -7,7 +7,7 @@
 #include "engine/base/result.h"
 #include "engine/mesh/indexed_mesh.h"
 #include "engine/mesh/vertex_attributes.h"
-#include "engine/missing/filled_volume.h"
+#include "engine/missing/file/filled_volume.h"
 #include "engine/structure/layer_map.h"
 #include "engine/structure/structural_grid.h"
 #include "engine/volume/bricks.h"

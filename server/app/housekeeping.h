@@ -5,8 +5,8 @@
 #include <mutex>
 #include <thread>
 
-#include "server/app/extractions.h"
-#include "server/app/volumes.h"
+#include "server/app/extractions/extractions.h"
+#include "server/app/volumes/volumes.h"
 
 namespace geosis::server {
 

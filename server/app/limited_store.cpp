@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "server/app/extraction_blobs.h"
+#include "server/app/extractions/extraction_blobs.h"
 
 namespace geosis::server {
 namespace {

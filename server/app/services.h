@@ -1,8 +1,8 @@
 #pragma once
 
 #include "engine/pipeline/estimate.h"
-#include "server/app/extractions.h"
-#include "server/app/volumes.h"
+#include "server/app/extractions/extractions.h"
+#include "server/app/volumes/volumes.h"
 #include "server/jobs/job_queue.h"
 #include "server/jobs/memory_budget.h"
 #include "server/store/blob_store.h"

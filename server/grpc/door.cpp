@@ -11,15 +11,15 @@
 #include <grpcpp/server.h>
 #include <grpcpp/server_builder.h>
 
-#include "server/grpc/acceptor.h"
-#include "server/grpc/call.h"
-#include "server/grpc/door_tls.h"
-#include "server/grpc/extraction_service.h"
-#include "server/grpc/flood_reports.h"
-#include "server/grpc/grid_service.h"
-#include "server/grpc/hand_over.h"
-#include "server/grpc/self_probe.h"
-#include "server/grpc/volume_service.h"
+#include "server/grpc/calls/call.h"
+#include "server/grpc/connections/acceptor.h"
+#include "server/grpc/connections/door_tls.h"
+#include "server/grpc/connections/flood_reports.h"
+#include "server/grpc/connections/hand_over.h"
+#include "server/grpc/connections/self_probe.h"
+#include "server/grpc/services/extraction_service.h"
+#include "server/grpc/services/grid_service.h"
+#include "server/grpc/services/volume_service.h"
 
 namespace geosis::server::rpc {
 namespace {

@@ -6,10 +6,10 @@
 #include <string>
 
 #include "engine/base/result.h"
-#include "server/http/cors.h"
 #include "server/http/limits.h"
-#include "server/http/middleware.h"
-#include "server/http/router.h"
+#include "server/http/routing/cors.h"
+#include "server/http/routing/middleware.h"
+#include "server/http/routing/router.h"
 #include "server/jobs/slots.h"
 #include "server/net/tls_certificates.h"
 

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "server/http/error_reply.h"
-#include "server/http/reply_head.h"
-#include "server/http/upload_body.h"
+#include "server/http/routing/error_reply.h"
+#include "server/http/uploads/upload_body.h"
+#include "server/http/wire/reply_head.h"
 
 namespace geosis::server::http {
 namespace {

@@ -8,13 +8,13 @@
 #include <mutex>
 #include <unordered_map>
 
-#include "server/http/body_budget.h"
-#include "server/http/connection.h"
+#include "server/http/connections/body_budget.h"
+#include "server/http/connections/connection.h"
+#include "server/http/connections/mailbox.h"
+#include "server/http/connections/poller.h"
+#include "server/http/connections/tls.h"
 #include "server/http/front.h"
-#include "server/http/mailbox.h"
-#include "server/http/poller.h"
-#include "server/http/tls.h"
-#include "server/http/upload_threads.h"
+#include "server/http/uploads/upload_threads.h"
 #include "server/jobs/handler_pool.h"
 #include "server/net/listener.h"
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "server/http/head_parser.h"
+#include "server/http/wire/head_parser.h"
 
 namespace geosis::server::http {
 

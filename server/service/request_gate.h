@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "server/auth/api_keys.h"
-#include "server/http/middleware.h"
+#include "server/http/routing/middleware.h"
 #include "server/jobs/job_queue.h"
 #include "server/log/log.h"
 #include "server/metrics/metrics.h"

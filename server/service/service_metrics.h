@@ -1,6 +1,6 @@
 #pragma once
 
-#include "server/app/extractions.h"
+#include "server/app/extractions/extractions.h"
 #include "server/jobs/job_queue.h"
 #include "server/jobs/memory_budget.h"
 #include "server/log/log.h"

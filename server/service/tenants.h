@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "server/app/extractions.h"
+#include "server/app/extractions/extractions.h"
 #include "server/app/housekeeping.h"
 #include "server/app/services.h"
-#include "server/app/volumes.h"
+#include "server/app/volumes/volumes.h"
 
 namespace geosis::server {
 

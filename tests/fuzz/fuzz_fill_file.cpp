@@ -10,8 +10,8 @@
 
 #include <xxhash.h>
 
-#include "engine/missing/fill_format.h"
-#include "engine/missing/fill_image.h"
+#include "engine/missing/file/fill_format.h"
+#include "engine/missing/file/fill_image.h"
 #include "engine/volume/brick_file.h"
 
 namespace {

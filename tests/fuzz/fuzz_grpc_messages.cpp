@@ -17,9 +17,9 @@
 
 #include "server/documents/json_text.h"
 #include "server/documents/request.h"
-#include "server/grpc/message_codec.h"
-#include "server/grpc/receiving.h"
-#include "server/grpc/wire.h"
+#include "server/grpc/calls/receiving.h"
+#include "server/grpc/messages/message_codec.h"
+#include "server/grpc/messages/wire.h"
 
 namespace {
 

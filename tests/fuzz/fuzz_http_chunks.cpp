@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "server/http/chunk_decoder.h"
+#include "server/http/wire/chunk_decoder.h"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "server/http/form_reader.h"
+#include "server/http/wire/form_reader.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <variant>
 
-#include "server/http/head_parser.h"
+#include "server/http/wire/head_parser.h"
 
 using geosis::server::http::Head;
 

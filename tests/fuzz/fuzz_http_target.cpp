@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "server/http/target_matcher.h"
+#include "server/http/wire/target_matcher.h"
 
 namespace {
 

@@ -19,7 +19,7 @@
 #include "engine/volume/formats/segy_write.h"
 #include "engine/volume/node_file.h"
 #include "server/documents/json_text.h"
-#include "server/grpc/message_codec.h"
+#include "server/grpc/messages/message_codec.h"
 
 namespace {
 

@@ -8,10 +8,10 @@
 #include <benchmark/benchmark.h>
 
 #include "engine/base/progress.h"
-#include "engine/missing/inverse_distance.h"
-#include "engine/missing/plate_gaps.h"
-#include "engine/missing/thin_plate.h"
-#include "engine/missing/wide_plate.h"
+#include "engine/missing/inverse_distance/inverse_distance.h"
+#include "engine/missing/plate/plate_gaps.h"
+#include "engine/missing/plate/thin_plate.h"
+#include "engine/missing/plate/wide_plate.h"
 #include "engine/volume/brick_file.h"
 #include "tests/engine/missing/gap_boxes.h"
 #include "tests/support/random.h"

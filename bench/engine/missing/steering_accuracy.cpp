@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/missing/steered_plate.h"
+#include "engine/missing/plate/steered_plate.h"
 #include "engine/volume/formats/import.h"
 #include "engine/volume/synthetic_survey.h"
 #include "tests/support/random.h"

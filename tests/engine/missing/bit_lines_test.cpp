@@ -1,4 +1,4 @@
-#include "engine/missing/bit_lines.h"
+#include "engine/missing/gaps/bit_lines.h"
 
 #include <vector>
 

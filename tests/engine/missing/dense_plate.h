@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "engine/base/vec3.h"
-#include "engine/missing/gap_box.h"
+#include "engine/missing/gaps/gap_box.h"
 
 namespace geosis::test {
 

@@ -6,7 +6,7 @@
 
 #include <xxhash.h>
 
-#include "engine/missing/fill_format.h"
+#include "engine/missing/file/fill_format.h"
 #include "tests/engine/missing/gappy_fields.h"
 #include "tests/engine/volume/scratch_folder.h"
 

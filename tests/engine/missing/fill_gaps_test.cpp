@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "engine/missing/brick_nodes.h"
+#include "engine/missing/gaps/survey_scan.h"
 #include "engine/missing/linear_fill.h"
-#include "engine/missing/survey_scan.h"
 #include "tests/engine/missing/gappy_fields.h"
 
 namespace geosis {

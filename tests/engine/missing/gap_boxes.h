@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "engine/base/progress.h"
-#include "engine/missing/gap_box.h"
+#include "engine/missing/gaps/gap_box.h"
 
 namespace geosis::test {
 

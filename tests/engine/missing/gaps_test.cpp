@@ -1,4 +1,4 @@
-#include "engine/missing/gaps.h"
+#include "engine/missing/gaps/gaps.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "engine/missing/gap_jobs.h"
+#include "engine/missing/gaps/gap_jobs.h"
 #include "tests/engine/missing/gappy_fields.h"
 
 namespace geosis {

@@ -1,4 +1,4 @@
-#include "engine/missing/inverse_distance.h"
+#include "engine/missing/inverse_distance/inverse_distance.h"
 
 #include <cmath>
 #include <limits>

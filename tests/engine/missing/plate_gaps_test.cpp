@@ -1,4 +1,4 @@
-#include "engine/missing/plate_gaps.h"
+#include "engine/missing/plate/plate_gaps.h"
 
 #include <gtest/gtest.h>
 

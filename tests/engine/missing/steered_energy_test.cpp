@@ -1,4 +1,4 @@
-#include "engine/missing/steered_energy.h"
+#include "engine/missing/plate/steered_energy.h"
 
 #include <cmath>
 #include <string>

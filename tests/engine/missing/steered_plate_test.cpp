@@ -1,4 +1,4 @@
-#include "engine/missing/steered_plate.h"
+#include "engine/missing/plate/steered_plate.h"
 
 #include <algorithm>
 #include <cfloat>
@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/missing/thin_plate.h"
+#include "engine/missing/plate/thin_plate.h"
 #include "tests/engine/missing/dense_plate.h"
 #include "tests/support/random.h"
 

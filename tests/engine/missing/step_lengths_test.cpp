@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/missing/survey_scan.h"
+#include "engine/missing/gaps/survey_scan.h"
 #include "tests/engine/missing/fill_oracle.h"
 #include "tests/engine/missing/gappy_fields.h"
 

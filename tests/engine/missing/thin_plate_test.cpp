@@ -1,4 +1,4 @@
-#include "engine/missing/thin_plate.h"
+#include "engine/missing/plate/thin_plate.h"
 
 #include <cmath>
 #include <cstring>
@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/missing/plate_gaps.h"
-#include "engine/missing/wide_plate.h"
+#include "engine/missing/plate/plate_gaps.h"
+#include "engine/missing/plate/wide_plate.h"
 #include "tests/engine/missing/gap_boxes.h"
 #include "tests/engine/missing/plate_oracle.h"
 #include "tests/support/random.h"

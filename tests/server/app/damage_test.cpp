@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "server/app/result_streams.h"
+#include "server/app/extractions/result_streams.h"
 #include "server/store/dir_store.h"
 #include "tests/server/app/service_fixture.h"
 #include "tests/server/store/temporary_folder.h"

@@ -1,4 +1,4 @@
-#include "server/app/extractions.h"
+#include "server/app/extractions/extractions.h"
 
 #include <atomic>
 #include <latch>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "server/app/result_streams.h"
+#include "server/app/extractions/result_streams.h"
 #include "server/store/memory_store.h"
 #include "tests/server/app/service_fixture.h"
 

@@ -1,4 +1,4 @@
-#include "server/app/fills.h"
+#include "server/app/derived/fills.h"
 
 #include <fstream>
 #include <memory>

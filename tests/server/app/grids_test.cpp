@@ -1,4 +1,4 @@
-#include "server/app/grids.h"
+#include "server/app/derived/grids.h"
 
 #include <cstring>
 #include <fstream>
@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/volume/brick_file.h"
-#include "server/app/volumes.h"
+#include "server/app/volumes/volumes.h"
 #include "server/store/dir_store.h"
 #include "server/store/memory_store.h"
 #include "tests/server/app/service_fixture.h"

@@ -1,10 +1,10 @@
-#include "server/app/level_export.h"
+#include "server/app/extractions/level_export.h"
 
 #include <gtest/gtest.h>
 
 #include "engine/base/digest.h"
 #include "engine/codec/level_codec.h"
-#include "server/app/result_streams.h"
+#include "server/app/extractions/result_streams.h"
 #include "server/store/memory_store.h"
 #include "server/store/piece_sums.h"
 #include "tests/server/app/service_fixture.h"

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "server/app/result_streams.h"
+#include "server/app/extractions/result_streams.h"
 #include "server/store/memory_store.h"
 #include "tests/server/app/service_fixture.h"
 

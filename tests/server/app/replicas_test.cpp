@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "server/app/extractions.h"
-#include "server/app/result_streams.h"
-#include "server/app/run_record.h"
+#include "server/app/extractions/extractions.h"
+#include "server/app/extractions/result_streams.h"
+#include "server/app/extractions/run_record.h"
 #include "server/store/memory_store.h"
 #include "tests/server/app/service_fixture.h"
 

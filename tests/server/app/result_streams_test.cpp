@@ -1,4 +1,4 @@
-#include "server/app/result_streams.h"
+#include "server/app/extractions/result_streams.h"
 
 #include <fstream>
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "server/app/extractions.h"
-#include "server/app/volumes.h"
+#include "server/app/extractions/extractions.h"
+#include "server/app/volumes/volumes.h"
 #include "server/jobs/job_queue.h"
 #include "server/store/blob_store.h"
 

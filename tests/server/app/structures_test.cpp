@@ -1,4 +1,4 @@
-#include "server/app/structures.h"
+#include "server/app/derived/structures.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "server/app/volumes.h"
+#include "server/app/volumes/volumes.h"
 
 #include <algorithm>
 #include <atomic>

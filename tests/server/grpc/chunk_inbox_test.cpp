@@ -1,4 +1,4 @@
-#include "server/grpc/chunk_inbox.h"
+#include "server/grpc/calls/chunk_inbox.h"
 
 #include <array>
 #include <atomic>

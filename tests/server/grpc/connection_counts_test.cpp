@@ -1,4 +1,4 @@
-#include "server/grpc/connection_counts.h"
+#include "server/grpc/connections/connection_counts.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "server/grpc/error_status.h"
+#include "server/grpc/messages/error_status.h"
 
 #include <algorithm>
 #include <cctype>

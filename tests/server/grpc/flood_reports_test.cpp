@@ -1,4 +1,4 @@
-#include "server/grpc/flood_reports.h"
+#include "server/grpc/connections/flood_reports.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/grpc/hand_over.h"
+#include "server/grpc/connections/hand_over.h"
 
 #include <atomic>
 #include <thread>

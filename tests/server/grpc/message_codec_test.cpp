@@ -1,4 +1,4 @@
-#include "server/grpc/message_codec.h"
+#include "server/grpc/messages/message_codec.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "server/grpc/self_probe.h"
+#include "server/grpc/connections/self_probe.h"
 
 #include <thread>
 

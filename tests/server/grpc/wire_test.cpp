@@ -1,4 +1,4 @@
-#include "server/grpc/wire.h"
+#include "server/grpc/messages/wire.h"
 
 #include <random>
 #include <string>

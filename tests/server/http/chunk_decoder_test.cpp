@@ -1,4 +1,4 @@
-#include "server/http/chunk_decoder.h"
+#include "server/http/wire/chunk_decoder.h"
 
 #include <array>
 #include <string>

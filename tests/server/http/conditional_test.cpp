@@ -1,4 +1,4 @@
-#include "server/http/conditional.h"
+#include "server/http/wire/conditional.h"
 
 #include <algorithm>
 #include <string>

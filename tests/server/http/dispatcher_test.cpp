@@ -1,4 +1,4 @@
-#include "server/http/dispatcher.h"
+#include "server/http/routing/dispatcher.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "server/http/error_reply.h"
+#include "server/http/routing/error_reply.h"
 
 #include <gtest/gtest.h>
 
 #include "server/app/errors.h"
-#include "server/http/reply_head.h"
+#include "server/http/wire/reply_head.h"
 
 namespace geosis::server::http {
 namespace {

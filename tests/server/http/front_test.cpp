@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
-#include "server/http/error_reply.h"
+#include "server/http/routing/error_reply.h"
 #include "tests/server/http/raw_client.h"
 #include "tests/server/http/test_streams.h"
 

@@ -1,4 +1,4 @@
-#include "server/http/head_parser.h"
+#include "server/http/wire/head_parser.h"
 
 #include <string>
 

@@ -1,4 +1,4 @@
-#include "server/http/reply_cache.h"
+#include "server/http/routing/reply_cache.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/http/target_matcher.h"
+#include "server/http/wire/target_matcher.h"
 
 #include <gtest/gtest.h>
 

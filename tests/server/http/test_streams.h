@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "server/app/byte_stream.h"
-#include "server/http/exchange.h"
+#include "server/http/routing/exchange.h"
 
 namespace geosis::server::http {
 

@@ -1,4 +1,4 @@
-#include "server/http/upload_threads.h"
+#include "server/http/uploads/upload_threads.h"
 
 #include <latch>
 

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <grpcpp/support/byte_buffer.h>
+#include <grpcpp/support/server_callback.h>
+
+#include "server/grpc/calls/call.h"
+
+namespace geosis::server::rpc {
+
+/// UploadGrid: node positions in, their grid out. Messages as they are on the wire: only_field() says why.
+grpc::ServerReadReactor<grpc::ByteBuffer>* start_grid_upload(CallRoom& room, grpc::CallbackServerContext* context,
+                                                             grpc::ByteBuffer* response);
+
+}  // namespace geosis::server::rpc

@@ -8,10 +8,12 @@ namespace geosis {
 
 /// A trace with its ends repeated, to be read between and a little beyond its samples. NaN spreads over the four
 /// samples around it.
-class WarpedTrace {
+///
+/// pad   samples beyond the ends that may be asked for, less two. It decides how positions are rounded: another one
+///       gives other last bits.
+template <std::size_t kPad>
+class PaddedTrace {
  public:
-  static constexpr std::size_t kPad = 16;  ///< samples beyond the ends that may be asked for, less two
-
   void load(const float* samples, std::size_t count, double scale = 1) {
     padded_.resize(count + 2 * kPad);
     std::transform(samples, samples + count, padded_.begin() + kPad,
@@ -38,5 +40,7 @@ class WarpedTrace {
  private:
   std::vector<float> padded_;
 };
+
+using WarpedTrace = PaddedTrace<16>;
 
 }  // namespace geosis

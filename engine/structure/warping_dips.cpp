@@ -13,6 +13,7 @@ namespace {
 
 constexpr int kRounds = 4;
 constexpr Vec3d kWindow = {2, 2, 4};
+constexpr std::size_t kPad = 5;          // half the steepest dip and the cubic's reach
 constexpr double kLeastContrast = 1e-3;  // of the box's mean squared slope: below it, dips rather stay where they are
 
 /// The links of one lateral direction: from each trace to the one `stride` nodes on.
@@ -89,7 +90,7 @@ class Links {
         std::fill_n(stiffness.begin() + static_cast<std::ptrdiff_t>(first), samples_, 0.0f);
         return;
       }
-      thread_local WarpedTrace here, next;
+      thread_local PaddedTrace<kPad> here, next;
       here.load(&box_.value[first], samples_, scale_);
       next.load(&box_.value[first + stride_], samples_, scale_);
       for (std::size_t k = 0; k < samples_; ++k) {

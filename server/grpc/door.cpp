@@ -27,7 +27,6 @@ namespace {
 constexpr int kLargestMessage = 4 << 20;  // received: a chunk of a file
 constexpr int kMinute = 60'000;
 constexpr int kLargestMetadata = 16 * 1024;
-constexpr int kLargestRead = 128 * 1024;
 constexpr std::size_t kMemory = std::size_t{256} << 20;  // beyond, gRPC reads more slowly
 constexpr std::size_t kLanes = 8;                        // each costs 14 us of every hand-over
 constexpr std::chrono::milliseconds kLanePatience{1000};
@@ -72,7 +71,6 @@ void set_limits(grpc::ServerBuilder& builder, const DoorOptions& options) {
   builder.SetResourceQuota(grpc::ResourceQuota("geosis").Resize(kMemory).SetMaxThreads(kReflectionThreads));
   builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, options.streams_per_connection);
   builder.AddChannelArgument(GRPC_ARG_MAX_METADATA_SIZE, kLargestMetadata);
-  builder.AddChannelArgument(GRPC_ARG_TCP_MAX_READ_CHUNK_SIZE, kLargestRead);
   builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, static_cast<int>(options.patience.count()));
   // A peer that is gone without a word is noticed; one that asks all the time is told to go.
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kMinute);
@@ -84,17 +82,17 @@ void set_limits(grpc::ServerBuilder& builder, const DoorOptions& options) {
   builder.AddChannelArgument(GRPC_ARG_MAX_CONNECTION_AGE_GRACE_MS, 60 * kMinute);
 }
 
-/// Clients that wait for their answers hold what may be open and a few more, whose memory is just given back. One may
-/// take back a call in the middle of its largest message.
-FloodGuard flood_guard(const DoorOptions& options) {
+/// A client may send a message that is three times too large and is told so.
+FloodGuard flood_guard(const DoorOptions& options, std::size_t uploads) {
   const auto open = static_cast<std::uint64_t>(options.streams_per_connection);
-  return FloodGuard({.calls = {.of_one = 16 * open, .of_one_then = 2 * open, .of_all = 32 * open},
-                     .bytes = {.of_one = kLargestMessage + kLargestMessage / 4,
-                               .of_one_then = 2 * kLargestMessage,
-                               .of_all = kMemory / 4},
+  return FloodGuard({.open_calls = open,
+                     .leftover_calls = {.of_one = 15 * open, .of_all = 32 * open},
+                     .loose_bytes = {.of_one = 2 * kLargestMessage, .of_all = 12 * kLargestMessage},
                      .message_bytes = kLargestMessage,
+                     .most_messages = uploads,
                      .head_bytes = 2 * kLargestMetadata,
-                     .unlooked_bytes = 16 * 1024});
+                     .unlooked_bytes = 16 * 1024,
+                     .patience = 100});
 }
 
 /// A way into a server that is not built yet. gRPC lets one socket in at a time by each.
@@ -154,15 +152,15 @@ class Door::Running {
     hand_over_ = std::make_unique<HandOver>(std::move(lanes), kLanePatience);
     acceptor_ = std::make_unique<Acceptor>(
         *std::move(listener), Acceptor::Limits{options.connections, options.connections_per_peer},
-        [this](Descriptor socket) { hand_over_->hand(std::move(socket)); },
-        [this, guard = flood_guard(options)](const auto& open) mutable {
+        [this](Descriptor socket, const std::string& name) { hand_over_->hand(std::move(socket), name); },
+        [this, guard = flood_guard(options, uploads_.most())](const auto& open) mutable {
           auto verdict = guard.look(open, calls());
+          if (auto stuck = hand_over_->stuck()) verdict.harmful.push_back(*std::move(stuck));
           floods_.note(verdict.harmful, FloodReports::Clock::now());
           return verdict;
         },
         [this] {
           room_.open.end_late_ones();
-          hand_over_->end_stuck();
           floods_.tick(FloodReports::Clock::now());
           if (certificates_) certificates_->renew();
         });
@@ -186,10 +184,11 @@ class Door::Running {
 
   void drain(std::chrono::milliseconds grace) {
     if (is_draining_.exchange(true)) return;
+    const auto end = std::chrono::system_clock::now() + grace;
     set_serving(false);
-    acceptor_->stop();
-    hand_over_->stop();
-    server_->Shutdown(std::chrono::system_clock::now() + grace);
+    if (acceptor_) acceptor_->stop();
+    if (hand_over_) hand_over_->stop();
+    server_->Shutdown(end);
   }
 
   void stop() {

@@ -20,6 +20,8 @@ class UploadThreads {
   /// False when there are enough already, or the system gives no thread. Work must not throw.
   bool start(const std::string& peer, std::function<void()> work);
   void join_all();
+  /// Uploads that may run at one time.
+  std::size_t most() const { return slots_.most(); }
 
  private:
   struct Running {

@@ -12,7 +12,6 @@ namespace {
 
 constexpr int kTickMilliseconds = 250;
 constexpr int kLookMilliseconds = 20;  // a flood begins a few thousand calls in that time
-constexpr std::chrono::seconds kLongestWait{1};
 
 }  // namespace
 
@@ -32,6 +31,7 @@ void Acceptor::stop() {
   const std::uint64_t one = 1;
   static_cast<void>(::write(wake_.number(), &one, sizeof one) == 0);  // else the next tick tells it
   thread_.join();
+  waiting_.clear();
   listener_.close();
 }
 
@@ -54,7 +54,8 @@ void Acceptor::run() {
 void Acceptor::look() {
   std::vector<FloodGuard::Open> connections;
   for (const Open& one : open_) {
-    if (one.socket.is_open()) connections.push_back({one.name, bytes_read(one.socket.number()), one.was_ended});
+    if (one.socket.is_open())
+      connections.push_back({one.name, one.socket.inode(), bytes_read(one.socket.number()), one.was_ended});
   }
   FloodGuard::Verdict verdict;
   try {
@@ -79,11 +80,18 @@ bool Acceptor::has_ending(const std::string& peer) const {
                      [&](const Open& one) { return one.was_ended && one.peer == peer && one.socket.is_open(); });
 }
 
+/// Of two with one name nobody could tell which one counts.
+bool Acceptor::is_open(const std::string& name) const {
+  return std::any_of(open_.begin(), open_.end(),
+                     [&](const Open& one) { return one.name == name && one.socket.is_open(); });
+}
+
 void Acceptor::hand_waiting() {
+  if (is_full_) return;
   const auto now = std::chrono::steady_clock::now();
   std::erase_if(waiting_, [&](Waiting& one) {
-    if (now - one.since < kLongestWait && has_ending(one.peer)) return false;
-    hand_(std::move(one.socket));
+    if (now - one.since < limits_.longest_wait && has_ending(one.peer)) return false;
+    hand_(std::move(one.socket), one.name);
     return true;
   });
 }
@@ -102,13 +110,15 @@ void Acceptor::accept_all() {
     }
     if (!has_room_for(accepted.peer)) continue;  // closed
     const int number = accepted.socket.number();
+    const std::string name = connection_name(number);
+    if (is_open(name)) continue;  // its client will come from another port
     const bool must_wait = has_ending(accepted.peer);
-    open_.push_back({LentSocket(number), accepted.peer, connection_name(number)});
+    open_.push_back({LentSocket(number), accepted.peer, name});
     count_ = open_.size();
     if (must_wait)
-      waiting_.push_back({std::move(accepted.socket), accepted.peer, std::chrono::steady_clock::now()});
+      waiting_.push_back({std::move(accepted.socket), accepted.peer, name, std::chrono::steady_clock::now()});
     else
-      hand_(std::move(accepted.socket));
+      hand_(std::move(accepted.socket), name);
   }
 }
 

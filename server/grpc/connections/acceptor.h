@@ -23,14 +23,15 @@ namespace geosis::server::rpc {
 /// too many, ends what floods, and knows its port. gRPC's own acceptor does none of it.
 ///
 /// A connection that was ended keeps its memory until gRPC has let go of it. As long as one of a peer does, up to a
-/// second, his further ones wait: who floods and comes back has one flood at a time.
+/// second or so, his further ones wait: who floods and comes back has one flood at a time.
 class Acceptor {
  public:
   struct Limits {
     std::size_t connections, connections_per_peer;
+    std::chrono::milliseconds longest_wait{1000};  ///< of a peer for what of his is being ended
   };
   /// Takes over an accepted socket; must not block: while it does, nobody looks.
-  using Hand = std::function<void(Descriptor socket)>;
+  using Hand = std::function<void(Descriptor socket, const std::string& name)>;
 
   /// What becomes of connections that are there, and whether others may come; asked often while there are any.
   using Look = std::function<FloodGuard::Verdict(const std::vector<FloodGuard::Open>&)>;
@@ -56,7 +57,7 @@ class Acceptor {
   };
   struct Waiting {
     Descriptor socket;
-    std::string peer;
+    std::string peer, name;
     std::chrono::steady_clock::time_point since;
   };
   void run();
@@ -64,6 +65,7 @@ class Acceptor {
   void end(const std::vector<std::string>& harmful);
   void hand_waiting();
   bool has_ending(const std::string& peer) const;
+  bool is_open(const std::string& name) const;
   void accept_all();
   void forget_closed();
   bool has_room_for(const std::string& peer);

@@ -25,7 +25,8 @@ std::vector<ConnectionCounts> count_connections(const std::function<bool(const s
 /// The client's address of a connected socket, as gRPC writes it; empty for what is none.
 std::string connection_name(int socket);
 
-/// Bytes that have arrived at a socket and were read, ever; 0 for what is none. cost: 2 system calls.
+/// Bytes that have arrived at a socket and were read, ever; 0 for what is none. Fewer than there are, when some arrive
+/// meanwhile. cost: 2 system calls.
 std::uint64_t bytes_read(int socket);
 
 }  // namespace geosis::server::rpc

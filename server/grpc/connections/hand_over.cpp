@@ -7,14 +7,19 @@ namespace geosis::server::rpc {
 
 HandOver::HandOver(std::vector<Lane> lanes, std::chrono::milliseconds patience)
     : lanes_(std::move(lanes)), patience_(patience), kept_(lanes_.size()) {
-  for (std::size_t lane = 0; lane < lanes_.size(); ++lane) threads_.emplace_back([this, lane] { run(lane); });
+  try {
+    for (std::size_t lane = 0; lane < lanes_.size(); ++lane) threads_.emplace_back([this, lane] { run(lane); });
+  } catch (...) {
+    stop();
+    throw;
+  }
 }
 
-void HandOver::hand(Descriptor socket) {
+void HandOver::hand(Descriptor socket, std::string name) {
   {
     const std::lock_guard lock(mutex_);
     if (is_stopping_) return;
-    waiting_.push_back(std::move(socket));
+    waiting_.push_back({std::move(socket), std::move(name)});
   }
   came_.notify_one();
 }
@@ -24,26 +29,27 @@ void HandOver::run(std::size_t lane) {
   for (;;) {
     came_.wait(lock, [&] { return is_stopping_ || !waiting_.empty(); });
     if (is_stopping_) return;
-    Descriptor socket = std::move(waiting_.front());
+    Waiting next = std::move(waiting_.front());
     waiting_.pop_front();
-    kept_[lane] = Kept{LentSocket(socket.number()), Clock::now()};
+    kept_[lane] = Kept{LentSocket(next.socket.number()), std::move(next.name), Clock::now()};
     lock.unlock();
-    lanes_[lane](std::move(socket));
+    lanes_[lane](std::move(next.socket));
     lock.lock();
     kept_[lane] = std::nullopt;
     left_.notify_all();
   }
 }
 
-void HandOver::end_stuck() {
+std::optional<std::string> HandOver::stuck() {
   const std::lock_guard lock(mutex_);
-  if (waiting_.empty()) return;
+  if (waiting_.empty()) return std::nullopt;
   const Kept* longest = nullptr;
   for (const auto& kept : kept_) {
-    if (!kept) return;  // a lane that is about to take what waits
+    if (!kept) return std::nullopt;  // a lane that is about to take what waits
     if (longest == nullptr || kept->since < longest->since) longest = &*kept;
   }
-  if (longest != nullptr && Clock::now() - longest->since >= patience_) longest->socket.reset();
+  if (longest == nullptr || Clock::now() - longest->since < patience_) return std::nullopt;
+  return longest->name;
 }
 
 void HandOver::stop() {

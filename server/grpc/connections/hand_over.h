@@ -7,6 +7,7 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -29,16 +30,22 @@ class HandOver {
   HandOver(std::vector<Lane> lanes, std::chrono::milliseconds patience);
   ~HandOver() { stop(); }
 
-  void hand(Descriptor socket);
-  /// Ends the connection that has kept its lane longest, if others wait and that is too long. To be called often.
-  void end_stuck();
+  /// name   of the connection.
+  void hand(Descriptor socket, std::string name);
+  /// The connection that has kept its lane longest, if others wait and that is too long: it should be ended.
+  std::optional<std::string> stuck();
   /// Waits until no lane is kept, for as long as one may be; ends those that still are, and what waits.
   void stop();
 
  private:
   using Clock = std::chrono::steady_clock;
+  struct Waiting {
+    Descriptor socket;
+    std::string name;
+  };
   struct Kept {
     LentSocket socket;
+    std::string name;
     Clock::time_point since;
   };
   void run(std::size_t lane);
@@ -47,7 +54,7 @@ class HandOver {
   const std::chrono::milliseconds patience_;
   std::mutex mutex_;
   std::condition_variable came_, left_;
-  std::deque<Descriptor> waiting_;
+  std::deque<Waiting> waiting_;
   std::vector<std::optional<Kept>> kept_;  ///< by lane
   bool is_stopping_ = false;
   std::vector<std::thread> threads_;

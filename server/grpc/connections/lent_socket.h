@@ -15,6 +15,7 @@ class LentSocket {
   explicit LentSocket(int number) : number_(number), inode_(inode_of(number)) {}
 
   int number() const { return number_; }
+  std::uint64_t inode() const { return inode_; }
   bool is_open() const { return inode_ != 0 && inode_of(number_) == inode_; }
 
   /// Ends the connection at once; what its client sent and nobody has read yet is gone. gRPC notices and closes it.

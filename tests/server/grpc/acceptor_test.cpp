@@ -42,7 +42,7 @@ class AcceptorTest : public testing::Test {
   /// Keeps what it is handed, and greets it.
   Acceptor make(Acceptor::Limits limits) {
     return {*Listener::open("127.0.0.1:0"), limits,
-            [this](Descriptor socket) {
+            [this](Descriptor socket, const std::string&) {
               EXPECT_EQ(::send(socket.number(), "!", 1, MSG_NOSIGNAL), 1);
               const std::lock_guard lock(mutex_);
               held_.push_back(std::move(socket));
@@ -98,7 +98,7 @@ TEST_F(AcceptorTest, EndsWhatItIsToldToAndNobodyElse) {
 }
 
 TEST_F(AcceptorTest, APeerWhoseConnectionIsBeingEndedWaitsForThat) {
-  Acceptor acceptor = make({.connections = 3, .connections_per_peer = 3});
+  Acceptor acceptor = make({.connections = 3, .connections_per_peer = 3, .longest_wait = 1h});
   const Descriptor harmful = connect_to(acceptor.port());
   EXPECT_FALSE(is_refused(harmful));
   tell({.harmful = {name_of(harmful)}, .is_full = false});
@@ -111,7 +111,7 @@ TEST_F(AcceptorTest, APeerWhoseConnectionIsBeingEndedWaitsForThat) {
 }
 
 TEST_F(AcceptorTest, NobodyWaitsForEverForWhatIsBeingEnded) {
-  Acceptor acceptor = make({.connections = 3, .connections_per_peer = 3});
+  Acceptor acceptor = make({.connections = 3, .connections_per_peer = 3, .longest_wait = 50ms});
   const Descriptor harmful = connect_to(acceptor.port());
   EXPECT_FALSE(is_refused(harmful));
   tell({.harmful = {name_of(harmful)}, .is_full = false});

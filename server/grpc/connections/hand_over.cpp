@@ -31,7 +31,7 @@ void HandOver::run(std::size_t lane) {
     if (is_stopping_) return;
     Waiting next = std::move(waiting_.front());
     waiting_.pop_front();
-    kept_[lane] = Kept{LentSocket(next.socket.number()), std::move(next.name), Clock::now()};
+    kept_[lane] = Kept{LentSocket(next.socket.number()), std::move(next.name), Clock::now(), false};
     lock.unlock();
     lanes_[lane](std::move(next.socket));
     lock.lock();
@@ -43,12 +43,13 @@ void HandOver::run(std::size_t lane) {
 std::optional<std::string> HandOver::stuck() {
   const std::lock_guard lock(mutex_);
   if (waiting_.empty()) return std::nullopt;
-  const Kept* longest = nullptr;
-  for (const auto& kept : kept_) {
+  Kept* longest = nullptr;
+  for (auto& kept : kept_) {
     if (!kept) return std::nullopt;  // a lane that is about to take what waits
     if (longest == nullptr || kept->since < longest->since) longest = &*kept;
   }
-  if (longest == nullptr || Clock::now() - longest->since < patience_) return std::nullopt;
+  if (longest == nullptr || longest->was_named || Clock::now() - longest->since < patience_) return std::nullopt;
+  longest->was_named = true;
   return longest->name;
 }
 

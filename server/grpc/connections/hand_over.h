@@ -32,7 +32,7 @@ class HandOver {
 
   /// name   of the connection.
   void hand(Descriptor socket, std::string name);
-  /// The connection that has kept its lane longest, if others wait and that is too long: it should be ended.
+  /// The connection that has kept its lane longest, if others wait and that is too long: it should be ended. Each once.
   std::optional<std::string> stuck();
   /// Waits until no lane is kept, for as long as one may be; ends those that still are, and what waits.
   void stop();
@@ -47,6 +47,7 @@ class HandOver {
     LentSocket socket;
     std::string name;
     Clock::time_point since;
+    bool was_named = false;  ///< by stuck()
   };
   void run(std::size_t lane);
 

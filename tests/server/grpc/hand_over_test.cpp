@@ -73,6 +73,7 @@ TEST_F(HandOverTest, NamesTheOneThatHasKeptItsLaneLongest) {
   EXPECT_EQ(hand_over.stuck(), std::nullopt);  // nobody waits
   const Descriptor third = client_of(hand_over);
   EXPECT_EQ(hand_over.stuck(), "1");
+  EXPECT_EQ(hand_over.stuck(), std::nullopt);  // said
   say(first);
   wait_until(begun_, 3);
   EXPECT_EQ(hand_over.stuck(), std::nullopt);

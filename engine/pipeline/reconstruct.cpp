@@ -224,7 +224,11 @@ Result<Reconstruction> run_stages(const Run& run) {
   auto m0 =
       timed(run.timings.extract, [&] { return extract_stage(*samples->samples, run.options, stage, run.progress); });
   if (!m0) return std::move(m0).error();
-  if (m0->surface.mesh.triangles.empty()) return Reconstruction{};
+  if (m0->empty) {
+    Reconstruction nothing;
+    nothing.empty = m0->empty;
+    return nothing;
+  }
   if (run.progress.cancelled()) return kCancelled;
   if (!is_curved) return Levels(*std::move(m0), *samples, run).make();
   const auto curved = timed(run.timings.extract, [&] {

@@ -110,12 +110,21 @@ struct GridReport {
   std::optional<NodeReport> nodes = std::nullopt;  ///< of the curvilinear grid, which has nothing of the above
 };
 
+/// Why a reconstruction has no levels.
+enum class EmptyReason {
+  nothing_in_range,  ///< no body in the region
+  no_surface,        ///< without cap: no border of a body in the region
+  no_seeded_body,    ///< no body holds a seed
+  too_small          ///< every body that could be kept has less than min_voxels
+};
+
 struct Reconstruction {
-  std::vector<ReconstructedLevel> levels;  ///< level 0 = finest; empty when nothing is in the range
+  std::vector<ReconstructedLevel> levels;  ///< level 0 = finest; empty when there is nothing to show
   /// From the levels' coordinates to the requested space, row-major. On a grid that is not affine a shift and a scale,
   /// which is a power of two: world positions in units of about a cell's edge.
   std::array<double, 16> transform = {};
-  std::optional<GridReport> grid = {};  ///< unset when the given grid was asked for
+  std::optional<GridReport> grid = {};    ///< unset when the given grid was asked for
+  std::optional<EmptyReason> empty = {};  ///< set when there are no levels
 };
 
 /// Seconds of each stage on the caller's clock, for the caller's eyes only: never part of a result. Levels are encoded

@@ -56,6 +56,24 @@ Result<void> leave_layers(const LayerMap& layers, GridIndex first, const Reconst
   return {};
 }
 
+bool has_surface(const LabelledSurface& surface) {
+  return !surface.mesh.triangles.empty();
+}
+
+/// Why no body passes the filter.
+EmptyReason refused_by(const BodyFilter& filter, const std::vector<std::optional<std::uint32_t>>& seed_body) {
+  const bool has_seeded = std::any_of(seed_body.begin(), seed_body.end(), [](auto body) { return body.has_value(); });
+  return filter.seeded && !has_seeded ? EmptyReason::no_seeded_body : EmptyReason::too_small;
+}
+
+/// Keeps the bodies that pass; says why when nothing is left to show.
+std::optional<EmptyReason> keep_bodies(LabelledSurface& surface, const BodyFilter& filter) {
+  const EmptyReason refusal = refused_by(filter, surface.seed_body);
+  select_bodies(surface, filter);
+  if (has_surface(surface)) return std::nullopt;
+  return surface.samples.empty() ? refusal : EmptyReason::no_surface;
+}
+
 }  // namespace
 
 Result<StageSamples> fill_stage(const ReconstructInput& input, const ReconstructOptions& options, Progress& progress) {
@@ -100,13 +118,19 @@ Result<StageSurface> extract_stage(const BrickedVolume& samples, const Reconstru
                              : extract_unlabelled(*field, options.range, extract, progress);
   if (!surface) return std::move(surface).error();
   result.surface = *std::move(surface);
+  if (!has_surface(result.surface))
+    result.empty = options.cap ? EmptyReason::nothing_in_range : EmptyReason::no_surface;
   if (stage.layers != nullptr) {
     auto left = leave_layers(*stage.layers, result.rectified.first, options, stage.mirrored, progress, result.surface);
     if (!left) return std::move(left).error();
+    if (!result.empty && !has_surface(result.surface)) result.empty = EmptyReason::no_surface;
   }
   BodyFilter filter = options.bodies.filter();
   if (stage.is_bent) filter.largest.reset();
-  if (is_labelled) select_bodies(result.surface, filter);
+  if (is_labelled) {
+    const auto refused = keep_bodies(result.surface, filter);
+    if (!result.empty) result.empty = refused;
+  }
   return result;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "engine/base/progress.h"
 #include "engine/base/result.h"
@@ -36,7 +37,8 @@ struct ExtractStage {
 /// M0, and what of the structural grid later stages need.
 struct StageSurface {
   LabelledSurface surface;
-  RectifiedVolume rectified;  ///< without samples on the axis grid
+  RectifiedVolume rectified;              ///< without samples on the axis grid
+  std::optional<EmptyReason> empty = {};  ///< set when the surface has no triangles
 };
 
 /// Third stage: M0, with the bodies kept that the options ask for. Without need of labels the surface has none.

@@ -5,6 +5,8 @@
 #include <cinttypes>
 #include <cstdio>
 
+#include "server/documents/empty_reason.h"
+
 namespace geosis::server {
 namespace {
 
@@ -50,7 +52,7 @@ std::string body_line(std::size_t number, const DescribedBody& body) {
 }  // namespace
 
 std::string level_table(const Reconstruction& reconstruction) {
-  if (reconstruction.levels.empty()) return "Nothing lies in the range: no levels.\n";
+  if (reconstruction.empty) return std::string(text_of(*reconstruction.empty)) + " There are no levels.\n";
   std::string table =
       "                                                                           distance/voxels     volume   inter-\n"
       "level  triangles   vertices components    euler  genus  loops  manifold      mean       max      drift   polated"

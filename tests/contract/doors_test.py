@@ -272,7 +272,11 @@ def nothing_in_range(door):
     created = door.create(ball_of(door), {"range": [1e6, None]})
     parts, manifest = door.stream(created["id"])
     assert parts == [] and manifest["empty"], manifest
-    return manifest
+    unseeded = door.create(ball_of(door), {"range": [0, None], "bodies": {"seeds": [[0, 0, 0]]}})
+    door.stream(unseeded["id"])
+    reasons = [door.extraction(extraction["id"])["empty_because"] for extraction in (created, unseeded)]
+    assert [reason["code"] for reason in reasons] == ["nothing_in_range", "no_seeded_body"], reasons
+    return manifest, reasons
 
 
 def bodies(door):

@@ -443,6 +443,8 @@ class Extractions(Refusals):
         manifest = CLIENT.get(f"/v1/extractions/{extraction}/manifest").json()
         self.assertEqual((manifest["levels"], manifest["empty"]), ([], True))
         self.assertEqual(len(CLIENT.get(f"/v1/extractions/{extraction}/stream").parts()), 1)
+        resource = CLIENT.get(f"/v1/extractions/{extraction}").json()
+        self.assertEqual((resource["empty"], resource["empty_because"]["code"]), (True, "nothing_in_range"))
         self.refused(CLIENT.get(f"/v1/extractions/{extraction}/lods/0.drc"), 404, "not_found")
 
     def test_events_tell_each_level_and_the_end(self):
@@ -642,6 +644,8 @@ class Bodies(Refusals):
     def test_a_seed_outside_every_body_keeps_none(self):
         bodies, manifest = self.bodies({"range": [0.999, None], "bodies": {"seeds": [[0, 0, 0]]}})
         self.assertEqual((bodies, manifest["levels"], manifest["empty"]), ([], [], True))
+        resource = CLIENT.get(f"/v1/extractions/{manifest['id']}").json()
+        self.assertEqual(resource["empty_because"], {"code": "no_seeded_body", "detail": "No body contains a seed."})
 
     def test_they_have_a_tag_and_come_again(self):
         target = f"/v1/extractions/{done_extraction()}/bodies"

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "server/documents/empty_reason.h"
 #include "server/documents/manifest.h"
 
 namespace geosis::server {
@@ -52,9 +53,10 @@ ReconstructInput reconstruct_input(const ExtractionInput& input, const Reconstru
           .nodes = input.nodes};
 }
 
-Result<Json> compute_extraction(Extraction& extraction, const ExtractionInput& input, const ReconstructOptions& options,
-                                const ReconstructFunction& reconstruct, const PartWriter& write_part,
-                                Progress& progress, ExtractionTimings& timings) {
+Result<ComputedExtraction> compute_extraction(Extraction& extraction, const ExtractionInput& input,
+                                              const ReconstructOptions& options, const ReconstructFunction& reconstruct,
+                                              const PartWriter& write_part, Progress& progress,
+                                              ExtractionTimings& timings) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
   const auto seconds = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
@@ -83,7 +85,8 @@ Result<Json> compute_extraction(Extraction& extraction, const ExtractionInput& i
   timings.simplify = stages.simplify;
   timings.encode = stages.encode;
   timings.certify = stages.certify;
-  return manifest_document(input.volume, options, *result, urls);
+  return ComputedExtraction{manifest_document(input.volume, options, *result, urls),
+                            empty_reason_document(result->empty)};
 }
 
 }  // namespace geosis::server

@@ -28,11 +28,17 @@ struct ExtractionInput {
 
 ReconstructInput reconstruct_input(const ExtractionInput& input, const ReconstructOptions& options);
 
-/// Computes an extraction: every part is kept, then its level shown, coarsest first; the manifest is returned.
+struct ComputedExtraction {
+  Json manifest;
+  Json empty_because;  ///< null when there are levels
+};
+
+/// Computes an extraction: every part is kept, then its level shown, coarsest first.
 ///
 /// timings   load, grid and fill are what came before; the others are set.
-Result<Json> compute_extraction(Extraction& extraction, const ExtractionInput& input, const ReconstructOptions& options,
-                                const ReconstructFunction& reconstruct, const PartWriter& write_part,
-                                Progress& progress, ExtractionTimings& timings);
+Result<ComputedExtraction> compute_extraction(Extraction& extraction, const ExtractionInput& input,
+                                              const ReconstructOptions& options, const ReconstructFunction& reconstruct,
+                                              const PartWriter& write_part, Progress& progress,
+                                              ExtractionTimings& timings);
 
 }  // namespace geosis::server

@@ -25,6 +25,7 @@ Extraction::Snapshot Extraction::snapshot() const {
     const std::lock_guard lock(mutex_);
     now.levels = levels_;
     now.timings = timings_;
+    now.empty_because = empty_because_;
     manifest = manifest_;
   }
   JobStatus status = face_->status();
@@ -98,12 +99,13 @@ void Extraction::add_level(Json entry) {
   face_->ring();
 }
 
-void Extraction::complete(const Json& manifest, std::optional<ExtractionTimings> timings) {
+void Extraction::complete(const Json& manifest, std::optional<ExtractionTimings> timings, Json empty_because) {
   {
     const std::lock_guard lock(mutex_);
     levels_ = {};
     manifest_ = manifest.dump(-1, ' ', false, Json::error_handler_t::replace);
     timings_ = std::move(timings);
+    empty_because_ = std::move(empty_because);
   }
   face_->finish({});
 }
@@ -124,6 +126,8 @@ Json resource_document(const Extraction& extraction) {
           {"progress", now.progress},
           {"request", identity.request},
           {"levels", now.levels},
+          {"empty", now.manifest && now.levels.empty()},
+          {"empty_because", std::move(now.empty_because)},
           {"error", now.error ? problem_document(*now.error) : Json(nullptr)},
           {"timings", timings_document(now.timings)},
           {"created_at", identity.created_at},

@@ -40,6 +40,7 @@ class Extraction {
     std::optional<Error> error;
     std::vector<Json> levels;      ///< entries ready so far, coarsest first
     std::optional<Json> manifest;  ///< once it is done
+    Json empty_because;            ///< empty_reason_document()'s
     std::optional<ExtractionTimings> timings;
   };
 
@@ -73,7 +74,9 @@ class Extraction {
   /// One that is known already is not added again.
   void add_level(Json entry);
   /// Done. Levels take the manifest's full entries.
-  void complete(const Json& manifest, std::optional<ExtractionTimings> timings);
+  ///
+  /// empty_because   null when there are levels, or when nobody knows.
+  void complete(const Json& manifest, std::optional<ExtractionTimings> timings, Json empty_because);
   /// Ended without a result.
   void fail(Error error) { face_->finish(std::move(error)); }
   /// Nobody wants it any more: it ends as cancelled, the work in this process with it.
@@ -93,6 +96,7 @@ class Extraction {
   std::vector<Json> levels_;  ///< until the manifest has them
   std::string manifest_;      ///< its text, a twentieth of its size as a value; empty until it is done
   std::optional<ExtractionTimings> timings_;
+  Json empty_because_;
 };
 
 /// Tells an extraction's face of the progress of the work that computes it, and the work of its cancellation.

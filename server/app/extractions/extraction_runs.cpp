@@ -99,12 +99,15 @@ Result<void> Extractions::compute(Extraction& extraction, const std::string& own
   const PartWriter write_part = [&](int level, int part, std::span<const std::byte> bytes) {
     return store_.put(key(identity.id, part_name(level, part)), bytes);
   };
-  auto manifest =
+  const auto computed =
       compute_extraction(extraction, opened->input(), opened->options, reconstruct_, write_part, progress, timings);
-  if (!manifest) return volumes_.judged(identity.volume, manifest.error());
+  if (!computed) return volumes_.judged(identity.volume, computed.error());
   if (!watch_.holds(extraction, owner)) return Error{ErrorCode::cancelled, "nobody wants it, or others compute it"};
-  if (auto done = write_document(key(identity.id, kManifest), *manifest); !done) return done;
-  extraction.complete(*manifest, timings);
+  if (!computed->empty_because.is_null()) {
+    if (auto done = write_document(key(identity.id, kEmptyBecause), computed->empty_because); !done) return done;
+  }
+  if (auto done = write_document(key(identity.id, kManifest), computed->manifest); !done) return done;
+  extraction.complete(computed->manifest, timings, computed->empty_because);
   if (events_.computed) events_.computed(identity, timings);
   return {};
 }
@@ -227,13 +230,13 @@ Result<std::shared_ptr<Extraction>> Extractions::create_transient(const ByteSour
         };
         ExtractionProgress both(*held, running);
         ExtractionTimings timings;
-        auto manifest = compute_extraction(*held, {.volume = summary, .samples = *volume->samples}, *options,
-                                           reconstruct_, write_part, both, timings);
-        if (!manifest) {
-          held->fail(manifest.error());
-          return std::move(manifest).error();
+        const auto computed = compute_extraction(*held, {.volume = summary, .samples = *volume->samples}, *options,
+                                                 reconstruct_, write_part, both, timings);
+        if (!computed) {
+          held->fail(computed.error());
+          return computed.error();
         }
-        held->complete(*manifest, timings);
+        held->complete(computed->manifest, timings, computed->empty_because);
         return {};
       });
   if (!job) return std::move(job).error();

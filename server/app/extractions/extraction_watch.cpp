@@ -68,6 +68,12 @@ Result<Json> ExtractionWatch::read(const Extraction& extraction, const char* nam
   return parse_json({reinterpret_cast<const char*>(bytes->data()), bytes->size()});
 }
 
+Json ExtractionWatch::empty_because(const Extraction& extraction, const Json& manifest) const {
+  if (!manifest.value("empty", false)) return nullptr;
+  auto reason = read(extraction, kEmptyBecause);
+  return reason ? *std::move(reason) : Json(nullptr);
+}
+
 bool ExtractionWatch::exists(const Extraction& extraction, const char* name) const {
   const auto found = store_.exists(key(extraction, name));
   return !found || *found;  // a store that fails says nothing
@@ -214,7 +220,7 @@ void ExtractionWatch::withdraw_abandoned(Extraction& extraction) {
 bool ExtractionWatch::follow_one(const std::shared_ptr<Extraction>& extraction, Watched& watched) {
   if (exists(*extraction, kManifest)) {
     if (auto manifest = read(*extraction, kManifest)) {
-      extraction->complete(*manifest, std::nullopt);
+      extraction->complete(*manifest, std::nullopt, empty_because(*extraction, *manifest));
       return false;
     }
   }

@@ -55,6 +55,8 @@ class ExtractionWatch {
   /// Gives the lease back and ends the extraction as its run ended: failed, or cancelled. After done, what only those
   /// need who wait is removed. When the lease was lost, the extraction is followed instead.
   void release(const std::shared_ptr<Extraction>& extraction, const std::string& owner, const Result<void>& outcome);
+  /// What the store says of a result without levels; null for others, and where it does not say.
+  Json empty_because(const Extraction& extraction, const Json& manifest) const;
 
  private:
   using Clock = std::chrono::steady_clock;

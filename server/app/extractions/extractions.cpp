@@ -241,7 +241,7 @@ Result<std::shared_ptr<Extraction>> Extractions::load(Entry& entry, const std::s
       part_reader(id));
   auto manifest = read_document(id, kManifest);
   if (manifest) {
-    extraction->complete(*manifest, std::nullopt);
+    extraction->complete(*manifest, std::nullopt, watch_.empty_because(*extraction, *manifest));
     return entry.extraction = std::move(extraction);
   }
   if (manifest.error().code != ErrorCode::not_found) return std::move(manifest).error();

@@ -53,10 +53,11 @@ struct ExtractionEvents {
 ///
 /// Stored under <tenant>/extractions/<id>/: `request.json` (before anything is acknowledged),
 /// `parts/<level>.<part>.drc`, `levels/<level>.<format>` with a description beside it (whole files, made on first
-/// request), `bodies.json` (made on first request), `run.json` and `levels.json` until it is done (RunRecord: who wants
-/// it, who computes it, which levels are ready), and `manifest.json`, written last: an extraction is done when its
-/// manifest is there. <tenant>/volumes/<volume>/results/<id> tells what was derived from a volume. docs/store.md tells
-/// what follows for several servers on one store.
+/// request), `bodies.json` (made on first request), `empty.json` (why there are no levels), `run.json` and
+/// `levels.json` until it is done (RunRecord: who wants it, who computes it, which levels are ready), and
+/// `manifest.json`, written last: an extraction is done when its manifest is there.
+/// <tenant>/volumes/<volume>/results/<id> tells what was derived from a volume. docs/store.md tells what follows for
+/// several servers on one store.
 class Extractions {
  public:
   /// threads   that one extraction may use.

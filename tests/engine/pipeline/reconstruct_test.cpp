@@ -99,7 +99,31 @@ TEST(Reconstruct, DistanceIsToM0EvenWhenNobodyAsksForIt) {
 TEST(Reconstruct, NothingInTheRangeHasNoLevels) {
   ReconstructOptions options = kBall;
   options.range = {1000, kInfinity};
-  EXPECT_TRUE(reconstruct_ball(options).levels.empty());
+  const Reconstruction result = reconstruct_ball(options);
+  EXPECT_TRUE(result.levels.empty());
+  EXPECT_EQ(result.empty, EmptyReason::nothing_in_range);
+  EXPECT_EQ(reconstruct_ball(kBall).empty, std::nullopt);
+}
+
+TEST(Reconstruct, SaysWhichFilterLeavesNoBody) {
+  ReconstructOptions options = kBall;
+  options.bodies = {.seeds = {{0, 0, 0}}};
+  EXPECT_EQ(reconstruct_ball(options).empty, EmptyReason::no_seeded_body);
+  options.bodies = {.min_voxels = 2 * kBallVolume};
+  EXPECT_EQ(reconstruct_ball(options).empty, EmptyReason::too_small);
+  options.bodies = {.seeds = {{19, 17, 15}}, .min_voxels = 2 * kBallVolume};
+  EXPECT_EQ(reconstruct_ball(options).empty, EmptyReason::too_small);
+  options.range = {1000, kInfinity};
+  EXPECT_EQ(reconstruct_ball(options).empty, EmptyReason::nothing_in_range);
+}
+
+TEST(Reconstruct, WithoutACapABodyThatFillsTheRegionHasNoSurface) {
+  ReconstructOptions options = kBall;
+  options.cap = false;
+  options.region = GridBox{{17, 15, 13}, {21, 19, 17}};
+  EXPECT_EQ(reconstruct_ball(options).empty, EmptyReason::no_surface);
+  options.bodies = {.seeds = {{19, 17, 15}}};
+  EXPECT_EQ(reconstruct_ball(options).empty, EmptyReason::no_surface);
 }
 
 TEST(Reconstruct, MeasuresAreInWorldUnitsAndOutwardsAlsoWhenMirrored) {

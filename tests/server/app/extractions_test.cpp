@@ -239,6 +239,25 @@ TEST_F(ExtractionsTest, NothingInRangeIsDoneAndEmpty) {
             ErrorCode::not_found);
 }
 
+TEST_F(ExtractionsTest, WhyItIsEmptyIsKept) {
+  std::string id;
+  {
+    Service service(*store);
+    const auto extraction = service.extractions.create(
+        service.add_ball(), {{"range", {0, nullptr}}, {"bodies", {{"seeds", {{0, 0, 0}}}}}}, Priority::interactive);
+    ASSERT_TRUE(extraction);
+    (*extraction)->wait_for(30s);
+    id = (*extraction)->identity().id;
+    const Json document = resource_document(**extraction);
+    EXPECT_EQ(document.at("empty"), true);
+    EXPECT_EQ(document.at("empty_because"), Json({{"code", "no_seeded_body"}, {"detail", "No body contains a seed."}}));
+  }
+  Service restarted(*store);
+  const auto found = restarted.extractions.find(id);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(resource_document(**found).at("empty_because").at("code"), "no_seeded_body");
+}
+
 TEST_F(ExtractionsTest, TransientOneKeepsNothing) {
   Service service(*store);
   const auto bytes = test::ball_file(6);

@@ -282,6 +282,15 @@ class Reconstruct(WithFolder):
         self.assertEqual((manifest["empty"], manifest["levels"]), (True, []))
         self.assertEqual(sorted(files_in(out)), ["bodies.json", "manifest.json"])
 
+    def test_says_why_there_are_no_levels(self):
+        for flags, reason in ((("1000", "inf"), "Nothing lies in the range."),
+                              (("0.55", "inf", "--seed", "0,0,0"), "No body contains a seed."),
+                              (("0.55", "inf", "--min-voxels", "1e9"),
+                               "Every body that could be kept is smaller than min_voxels.")):
+            run = geosis("reconstruct", self.survey, "--out", self.folder / "why", "--range", *flags)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            self.assertIn(reason + " There are no levels.", run.stdout)
+
     def test_removes_the_files_of_an_earlier_result(self):
         out, _ = self.reconstruct("again", *BODY, "--formats", "obj")
         (out / "notes.txt").write_text("mine", encoding="utf-8")

@@ -16,6 +16,7 @@ import tempfile
 import time
 import unittest
 from pathlib import Path
+from urllib.parse import urljoin
 
 from contract import OPENAPI, Contract
 from placed_grids import (DIMS, bent, enclosed_volume, mapped, mirrored, node_bytes, pillar_bytes, read_ply, unmatched,
@@ -446,6 +447,19 @@ class Extractions(Refusals):
         resource = CLIENT.get(f"/v1/extractions/{extraction}").json()
         self.assertEqual((resource["empty"], resource["empty_because"]["code"]), (True, "nothing_in_range"))
         self.refused(CLIENT.get(f"/v1/extractions/{extraction}/lods/0.drc"), 404, "not_found")
+
+    def test_urls_of_the_extraction_and_its_events_resolve_against_their_address(self):
+        target = f"/v1/extractions/{done_extraction()}"
+        manifest = CLIENT.get(target + "/manifest").json()
+        events = self.events(CLIENT.get(target + "/events"))
+        told = [(target + "/events", data) for name, data in events if name == "level"]
+        resource = CLIENT.get(target).json()
+        self.assertFalse(resource["empty"])
+        for base, level in [*told, *((target, level) for level in resource["levels"])]:
+            certified = manifest["levels"][level["level"]]
+            self.assertEqual(urljoin(base, level["url"]), urljoin(target + "/manifest", certified["url"]))
+            part = CLIENT.get(urljoin(base, level["parts"][0]["url"]))
+            self.assertEqual(hashlib.sha256(part.body).hexdigest(), certified["parts"][0]["sha256"])
 
     def test_events_tell_each_level_and_the_end(self):
         extraction = done_extraction()

@@ -16,6 +16,10 @@ Json timings_document(const std::optional<ExtractionTimings>& timings) {
           {"total", timings->total}};
 }
 
+std::string path_of(const Extraction& extraction) {
+  return "/v1/extractions/" + extraction.identity().id;
+}
+
 }  // namespace
 
 Extraction::Snapshot Extraction::snapshot() const {
@@ -115,10 +119,20 @@ void Extraction::cancel() {
   face_->request_cancel();
 }
 
+Json shown_level(const Extraction& extraction, Json entry) {
+  const auto show = [&](Json& url) {
+    if (url.is_string()) url = path_of(extraction) + "/" + url.get<std::string>();
+  };
+  show(entry.at("url"));
+  for (Json& part : entry.at("parts")) show(part.at("url"));
+  return entry;
+}
+
 Json resource_document(const Extraction& extraction) {
   const auto& identity = extraction.identity();
-  const Extraction::Snapshot now = extraction.snapshot();
-  const std::string self = "/v1/extractions/" + identity.id;
+  Extraction::Snapshot now = extraction.snapshot();
+  const std::string self = path_of(extraction);
+  for (Json& entry : now.levels) entry = shown_level(extraction, std::move(entry));
   return {{"id", identity.id},
           {"volume", identity.volume},
           {"state", name_of(now.state)},

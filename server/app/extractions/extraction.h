@@ -114,6 +114,9 @@ class ExtractionProgress final : public Progress {
   Progress& work_;
 };
 
+/// A level's entry beside no manifest: its urls, which are relative to the manifest, are paths of the server.
+Json shown_level(const Extraction& extraction, Json entry);
+
 /// The resource of the outside contract.
 Json resource_document(const Extraction& extraction);
 

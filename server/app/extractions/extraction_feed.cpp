@@ -42,7 +42,7 @@ std::variant<ExtractionEvent, NothingYet, NoMore> EventFeed::next() {
   const Extraction::Snapshot& now = look();
   if (told_ < now.levels.size()) {
     const std::uint64_t id = ++told_;
-    return ExtractionEvent{Kind::level, id, now.levels[id - 1]};
+    return ExtractionEvent{Kind::level, id, shown_level(extraction(), now.levels[id - 1])};
   }
   if (is_final(now.state)) {
     has_ended_ = true;

@@ -556,6 +556,18 @@ class Results(Refusals):
             head = CLIENT.call("HEAD", target)
             self.assertEqual((head.body, head.headers["content-length"]), (b"", str(len(whole.body))))
 
+    def test_downloads_have_names_that_tell_them_apart(self):
+        extraction = done_extraction()
+        CLIENT.get(f"/v1/extractions/{extraction}/lods/0.drc")  # the second time from memory
+        for name, saved in (("lods/0.drc", "level-0.drc"), ("lods/1.glb", "level-1.glb"), ("bodies", "bodies.json"),
+                            ("lods/1/parts/0.drc", "level-1-part-0.drc"), ("manifest", "manifest.json")):
+            target = f"/v1/extractions/{extraction}/{name}"
+            for answer in (CLIENT.get(target), CLIENT.call("HEAD", target), CLIENT.get(target, Range="bytes=0-3")):
+                self.assertEqual(answer.headers["content-disposition"], f'inline; filename="{extraction[:12]}-{saved}"')
+        for form, saved in (("png", "crossline-3.png"), ("f32", "crossline-3.f32")):
+            answer = CLIENT.get(f"/v1/volumes/{VOLUME}/slices/crossline/3?format={form}")
+            self.assertEqual(answer.headers["content-disposition"], f'inline; filename="{VOLUME[:12]}-{saved}"')
+
     def test_glb_and_stl_come_with_their_types_and_counts(self):
         extraction = done_extraction()
         level = CLIENT.get(f"/v1/extractions/{extraction}/manifest").json()["levels"][1]

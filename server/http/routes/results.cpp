@@ -6,6 +6,7 @@
 
 #include "server/app/extractions/result_streams.h"
 #include "server/http/connections/pending_replies.h"
+#include "server/http/download_name.h"
 #include "server/http/routes/routes.h"
 #include "server/http/routing/error_reply.h"
 #include "server/http/routing/json_reply.h"
@@ -34,14 +35,22 @@ Reply manifest(Services services, const Request& request) {
   // Its id names volume, request and result version, of which the manifest is a pure function.
   reply.headers = {{"Content-Type", "application/json"},
                    {"Cache-Control", kImmutable},
-                   {"ETag", "\"" + (*extraction)->identity().id + "\""}};
+                   {"ETag", "\"" + (*extraction)->identity().id + "\""},
+                   download_name((*extraction)->identity().id, "manifest.json")};
   return reply;
 }
 
-Reply file_reply(Result<LevelFile> file, const char* type, const std::string& transform) {
+/// How a file is presented.
+struct Face {
+  const char* type;
+  std::pair<std::string, std::string> name;
+};
+
+Reply file_reply(Result<LevelFile> file, const Face& face, const std::string& transform) {
   if (!file) return error_reply(file.error());
   Reply reply;
-  reply.headers = {{"Content-Type", type}, {"Cache-Control", kImmutable}, {"ETag", "\"" + file->sha256 + "\""}};
+  reply.headers = {
+      {"Content-Type", face.type}, {"Cache-Control", kImmutable}, {"ETag", "\"" + file->sha256 + "\""}, face.name};
   if (!transform.empty()) reply.headers.emplace_back("X-Geosis-Transform", transform);
   reply.stream = std::move(file->stream);
   reply.length = file->bytes;
@@ -54,7 +63,7 @@ Reply bodies(Services services, const Request& request) {
   if (!extraction) return error_reply(extraction.error());
   if (!(*extraction)->is_done()) return not_done(**extraction);
   const auto answer = [services, id = request.captures[0]] {
-    return file_reply(services.extractions.bodies(id), "application/json", "");
+    return file_reply(services.extractions.bodies(id), {"application/json", download_name(id, "bodies.json")}, "");
   };
   if (services.extractions.are_bodies_made(request.captures[0])) return answer();
   return after_job(services.extractions.begin_bodies(request.captures[0]), WhenAbandoned::run_on, answer);
@@ -87,16 +96,16 @@ std::string name_of(const Request& request) {
 }
 
 /// The file, which from now on is kept in memory if it is not too big.
-Reply kept_reply(Services services, const std::string& name, Result<LevelFile> file, const char* type) {
+Reply kept_reply(Services services, const std::string& name, Result<LevelFile> file, const Face& face) {
   if (!file || !services.kept.has_room_for(file->bytes)) {
     const std::string transform = file ? file->transform : "";
-    return file_reply(std::move(file), type, transform);
+    return file_reply(std::move(file), face, transform);
   }
   auto bytes = read_whole(*file);
   if (!bytes) return error_reply(bytes.error());
   const auto body = std::make_shared<const std::string>(*std::move(bytes));
   const std::string transform = file->transform;
-  Reply reply = file_reply(std::move(file), type, transform);
+  Reply reply = file_reply(std::move(file), face, transform);
   reply.stream.reset();
   reply.length.reset();
   reply.shared = body;
@@ -121,18 +130,20 @@ Reply level(Services services, const Request& request) {
   if (!(*extraction)->is_done()) return not_done(**extraction);
   const LevelFormat wanted = *level_format_of(format);  // the route lets no other through
   const int number = small_number(request.captures[1]);
-  const auto answer = [services, id, number, wanted, name = name_of(request)] {
-    return kept_reply(services, name, services.extractions.level(id, number, wanted), media_type_of(wanted));
+  const Face face{media_type_of(wanted), download_name(id, "level-" + std::to_string(number) + "." + format)};
+  const auto answer = [services, id, number, wanted, face, name = name_of(request)] {
+    return kept_reply(services, name, services.extractions.level(id, number, wanted), face);
   };
   if (services.extractions.is_level_made(id, number, wanted)) return answer();
   return after_job(services.extractions.begin_level(id, number, wanted), WhenAbandoned::run_on, answer);
 }
 
 Reply part(Services services, const Request& request) {
-  return kept_reply(services, name_of(request),
-                    services.extractions.part(request.captures[0], small_number(request.captures[1]),
-                                              small_number(request.captures[2])),
-                    "model/vnd.google.draco");
+  const std::string& id = request.captures[0];
+  const int level = small_number(request.captures[1]), part = small_number(request.captures[2]);
+  const std::string name = "level-" + std::to_string(level) + "-part-" + std::to_string(part) + ".drc";
+  return kept_reply(services, name_of(request), services.extractions.part(id, level, part),
+                    {media_type_of(LevelFormat::drc), download_name(id, name)});
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "server/documents/slice_png.h"
 #include "server/documents/volume_document.h"
 #include "server/http/connections/pending_replies.h"
+#include "server/http/download_name.h"
 #include "server/http/routes/routes.h"
 #include "server/http/routes/upload_options.h"
 #include "server/http/routing/error_reply.h"
@@ -175,6 +176,7 @@ Reply slice(Services services, const Request& request) {
   if (reply.status != 200) return reply;
   reply.headers.emplace_back("X-Geosis-Shape", std::to_string(read->rows) + "," + std::to_string(read->columns));
   reply.headers.emplace_back("Cache-Control", "public, max-age=31536000, immutable");
+  reply.headers.push_back(download_name(request.captures[0], axis_name + "-" + std::to_string(index) + "." + format));
   return reply;
 }
 

@@ -36,8 +36,9 @@ Result<void> check_slice(const Plane& plane, GridShape shape, std::int32_t index
   static constexpr const char* kNames[] = {"inline", "crossline", "sample"};
   const std::string name = kNames[plane.normal];
   if (index < 0 || index >= shape[plane.normal])
-    return Error{ErrorCode::invalid_argument,
-                 name + " slice " + std::to_string(index) + "; expected 0.." + std::to_string(shape[plane.normal] - 1)};
+    return Error{ErrorCode::invalid_argument, name + " slice " + std::to_string(index) +
+                                                  "; expected a node number, 0.." +
+                                                  std::to_string(shape[plane.normal] - 1)};
   const std::int64_t count = std::int64_t{plane.rows} * plane.columns;
   if (count > kMaxSliceSamples)
     return Error{ErrorCode::limit_exceeded, name + " slice of " + std::to_string(plane.rows) + " x " +

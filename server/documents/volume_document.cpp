@@ -1,5 +1,7 @@
 #include "server/documents/volume_document.h"
 
+#include <cmath>
+
 #include "server/documents/ids.h"
 #include "server/documents/import_options.h"
 
@@ -68,6 +70,17 @@ Result<VolumeSummary> parse_volume_document(const Json& document) {
   } catch (const Json::exception& problem) {
     return Error{ErrorCode::malformed_input, std::string("volume document: ") + problem.what()};
   }
+}
+
+std::optional<std::int32_t> node_called(const Json& document, int axis, double number) {
+  static constexpr std::array kNames = {"inline", "crossline", "sample"};
+  const Json& numbers = document.at("axes").at(kNames[static_cast<std::size_t>(axis)]);
+  if (!numbers.at("first").is_number() || !numbers.at("step").is_number()) return std::nullopt;
+  const double first = numbers.at("first").get<double>(), step = numbers.at("step").get<double>();
+  const std::int32_t nodes = document.at("dims").at(static_cast<std::size_t>(axis)).get<std::int32_t>();
+  const double node = std::round((number - first) / step);
+  if (!(node >= 0 && node < nodes) || first + node * step != number) return std::nullopt;
+  return static_cast<std::int32_t>(node);
 }
 
 Json candidates_document(const std::vector<GridCandidate>& candidates) {

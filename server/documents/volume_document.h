@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <optional>
 #include <string>
 
 #include "engine/base/result.h"
@@ -32,6 +34,10 @@ VolumeSummary summarize(const VolumeDescription& volume);
 ///
 /// errors   malformed_input: a field that is absent or makes no sense.
 Result<VolumeSummary> parse_volume_document(const Json& document);
+
+/// The node that the survey calls `number` on an axis (0 = inline, 1 = crossline, 2 = sample); nullopt when there is
+/// none.
+std::optional<std::int32_t> node_called(const Json& document, int axis, double number);
 
 /// The grids that a refused survey could be, as its refusal lists them.
 Json candidates_document(const std::vector<GridCandidate>& candidates);

@@ -357,6 +357,12 @@ class Slices(Refusals):
     def test_what_is_not_there_is_refused(self):
         target = f"/v1/volumes/{VOLUME}/slices/inline"
         self.assertIn(CLIENT.get(f"{target}/48").status, (400, 404))
+        for axis, last, number, called in (("inline", 47, 1021, "inline 1021"), ("crossline", 55, 2021, "crossline 2021"),
+                                           ("sample", 63, 1080, "1080 ms")):
+            refused = CLIENT.get(f"/v1/volumes/{VOLUME}/slices/{axis}/{number}").json()
+            self.assertEqual(refused["detail"],
+                             f"{axis} slice {number}; expected a node number, 0..{last}; {called} is node 20")
+        self.assertNotIn("is node", CLIENT.get(f"{target}/99999").json()["detail"])
         self.refused(CLIENT.get(f"{target}/0?colormap=rainbow"), 400, "invalid_argument")
         self.refused(CLIENT.get(f"{target}/0?format=gif"), 400, "invalid_argument")
         self.refused(CLIENT.get(f"/v1/volumes/{ABSENT}/slices/inline/0"), 404, "not_found")

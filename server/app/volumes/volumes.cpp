@@ -242,8 +242,24 @@ Result<Slice> Volumes::slice(const std::string& id, SliceAxis axis, std::int32_t
   const auto volume = open(id);
   if (!volume) return volume.error();
   auto read = read_slice(*(*volume)->samples, axis, index);
-  if (!read) return judged(id, read.error());
-  return read;
+  if (read) return read;
+  Error error = read.error();
+  if (error.code == ErrorCode::invalid_argument) error.message += which_node(id, axis, index);
+  return judged(id, std::move(error));
+}
+
+/// "; inline 1971 is node 20" where the number asked for is one of the survey's own, else nothing.
+std::string Volumes::which_node(const std::string& id, SliceAxis axis, std::int32_t number) const {
+  const auto volume = document(id);
+  if (!volume) return "";
+  const auto node = node_called(*volume, static_cast<int>(axis), number);
+  if (!node) return "";
+  const std::string text = std::to_string(number);
+  const std::string unit = volume->at("axes").at("sample").at("unit").get<std::string>();
+  const std::string what = axis == SliceAxis::inline_     ? "inline " + text
+                           : axis == SliceAxis::crossline ? "crossline " + text
+                                                          : text + (unit.empty() ? "" : " " + unit);
+  return "; " + what + " is node " + std::to_string(*node);
 }
 
 }  // namespace geosis::server

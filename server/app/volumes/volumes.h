@@ -79,6 +79,7 @@ class Volumes {
   Result<void> remove(const std::string& id);
 
   Result<Histogram> histogram(const std::string& id, int bins, Progress& progress);
+  /// index   a node number, from 0; whoever gives the survey's own number instead is told which node that is.
   Result<Slice> slice(const std::string& id, SliceAxis axis, std::int32_t index);
 
   /// What an error that came while reading a volume's samples says to a client: damage is ours, not his. Reported to
@@ -100,6 +101,7 @@ class Volumes {
   BlobKey key(const std::string& id, const std::string& name) const { return tenant_ + "/volumes/" + id + "/" + name; }
   Result<Json> read_document(const std::string& id, const std::string& name) const;
   Result<Json> read_sidecar(const std::string& id, const Json& volume) const;
+  std::string which_node(const std::string& id, SliceAxis axis, std::int32_t number) const;
   Result<UploadResult> keep(std::unique_ptr<StagedFile> bricks, const VolumeDescription& description,
                             const std::string& name);
   /// True when volume.json is this upload's now; false when there is another one.

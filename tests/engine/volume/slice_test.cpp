@@ -127,10 +127,10 @@ TEST(ReadSlice, RejectsAnIndexOutsideTheAxis) {
     EXPECT_EQ(slice.error().code, ErrorCode::invalid_argument);
     return slice.error().message;
   };
-  EXPECT_EQ(message(SliceAxis::inline_, 2), "inline slice 2; expected 0..1");
-  EXPECT_EQ(message(SliceAxis::crossline, -1), "crossline slice -1; expected 0..2");
+  EXPECT_EQ(message(SliceAxis::inline_, 2), "inline slice 2; expected a node number, 0..1");
+  EXPECT_EQ(message(SliceAxis::crossline, -1), "crossline slice -1; expected a node number, 0..2");
   EXPECT_EQ(message(SliceAxis::sample, std::numeric_limits<std::int32_t>::max()),
-            "sample slice 2147483647; expected 0..3");
+            "sample slice 2147483647; expected a node number, 0..3");
 }
 
 /// A huge volume whose samples nobody may read.

@@ -58,6 +58,16 @@ TEST(VolumeDocument, ListsWarnings) {
             Json::array({{{"code", "samples_differ"}, {"detail", "trace headers say 462, the file 75"}}}));
 }
 
+TEST(VolumeDocument, KnowsWhichNodeTheSurveyMeans) {
+  const Json document = volume_document(survey(), "");
+  EXPECT_EQ(node_called(document, 0, 1971), 0);
+  EXPECT_EQ(node_called(document, 0, 2121), 75);
+  EXPECT_EQ(node_called(document, 0, 2123), std::nullopt);
+  EXPECT_EQ(node_called(document, 0, 1972), std::nullopt);
+  EXPECT_EQ(node_called(document, 1, 2774), std::nullopt);
+  EXPECT_EQ(node_called(document, 2, 1002), 1);
+}
+
 TEST(CandidatesDocument, ListsEachGrid) {
   EXPECT_EQ(
       candidates_document({{189, 193, {5, 6, 50}, 3}}),

@@ -29,8 +29,9 @@ Command add_info_command(CLI::App& app) {
     progress.clear();
     const auto name = std::filesystem::path(input->path()).filename().string();
     Json document = volume_document(volume->description, name);
-    const GridDecision decision = decide_grid(*dips);
+    const GridDecision decision = decide_grid(*dips, volume->description.shape.samples);
     document["structure"] = dips_document(*dips);
+    if (is_beyond_trace(*dips, volume->description.shape.samples)) document["structure"]["period"] = nullptr;
     document["structure"]["auto"] = name_of(decision.is_structural ? GridChoice::structural : GridChoice::given);
     document["structure"]["because"] = decision.because;
     if (*nodes) {

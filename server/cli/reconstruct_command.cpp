@@ -67,8 +67,8 @@ void print_volume(const VolumeDescription& volume) {
     std::printf("warning: %s: %s\n", warning.code.c_str(), warning.detail.c_str());
 }
 
-void print_grid(GridChoice asked, const GridReport& report) {
-  if (asked == GridChoice::automatic) std::printf("grid: %s\n", decide_grid(report.dips).because.c_str());
+void print_grid(GridChoice asked, const GridReport& report, std::int32_t samples) {
+  if (asked == GridChoice::automatic) std::printf("grid: %s\n", decide_grid(report.dips, samples).because.c_str());
   if (report.nodes) {
     std::printf("grid: curvilinear%s, %.2f %% of the cells folded\n", report.nodes->mirrored ? ", mirrored" : "",
                 100 * report.nodes->folded_share);
@@ -172,7 +172,7 @@ Result<void> run_reconstruct(const ReconstructArguments& arguments) {
 
   progress.clear();
   print_volume(volume->description);
-  if (reconstruction->grid) print_grid(options->grid, *reconstruction->grid);
+  if (reconstruction->grid) print_grid(options->grid, *reconstruction->grid, summary.shape.samples);
   std::fputs(level_table(*reconstruction).c_str(), stdout);
   std::fputs(body_table(*bodies).c_str(), stdout);
   std::printf(

@@ -70,12 +70,18 @@ Result<DipReport> parse_dips_document(const Json& document) {
   return report;
 }
 
-GridDecision decide_grid(const DipReport& dips) {
+bool is_beyond_trace(const DipReport& dips, std::int32_t samples) {
+  return dips.period > samples;
+}
+
+GridDecision decide_grid(const DipReport& dips, std::optional<std::int32_t> samples) {
   const bool is_structural = prefers_structure(dips);
   const double steep = std::max(dips.dips[0].p95, dips.dips[1].p95);
+  const bool is_beyond = samples && is_beyond_trace(dips, *samples);
+  const std::string period = is_beyond ? "the dominant period, which is longer than a trace"
+                                       : "the dominant period of " + two_digits(dips.period) + " samples";
   return {is_structural, "95 % of the dips are within " + two_digits(steep) + " samples a trace, which is " +
-                             (is_structural ? "more" : "not more") + " than an eighth of the dominant period of " +
-                             two_digits(dips.period) + " samples"};
+                             (is_structural ? "more" : "not more") + " than an eighth of " + period};
 }
 
 Json grid_document(GridChoice asked, const GridReport& report) {

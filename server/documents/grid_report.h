@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -15,12 +16,17 @@ Json dips_document(const DipReport& dips);
 /// What dips_document made. errors: malformed_input.
 Result<DipReport> parse_dips_document(const Json& document);
 
+/// Whether so slow a period is none: it does not fit into a trace of so many samples.
+bool is_beyond_trace(const DipReport& dips, std::int32_t samples);
+
 /// What `grid: auto` chooses for such dips, and why, in one sentence.
+///
+/// samples   of a trace, where people read the sentence; a manifest's says the same whatever the trace.
 struct GridDecision {
   bool is_structural = false;
   std::string because;
 };
-GridDecision decide_grid(const DipReport& dips);
+GridDecision decide_grid(const DipReport& dips, std::optional<std::int32_t> samples = std::nullopt);
 
 /// The manifest's "grid": what was asked for, what was chosen and why, and how far it is to be trusted.
 Json grid_document(GridChoice asked, const GridReport& report);

@@ -136,6 +136,14 @@ class Info(WithFolder):
         self.assertEqual(document["missing"]["samples"], 1)
 
 
+    def test_names_no_period_longer_than_a_trace(self):
+        raw = self.folder / "slow.raw"
+        raw.write_bytes(struct.pack("<600f", *(1000.0 * i + k for i in range(6) for _ in range(5) for k in range(20))))
+        structure = json.loads(geosis("info", raw, "--format", "raw", "--dims", "6,5,20").stdout)["structure"]
+        self.assertEqual((structure["period"], structure["auto"]), (None, "given"))
+        self.assertTrue(structure["because"].endswith("the dominant period, which is longer than a trace"), structure)
+
+
 class PlacedGrids(WithFolder):
     """The sample survey on grids of files."""
 

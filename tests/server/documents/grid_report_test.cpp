@@ -26,6 +26,15 @@ TEST(DipsDocument, IsRefusedWithoutOneOfItsNumbers) {
   EXPECT_FALSE(parse_dips_document(document));
 }
 
+TEST(DecideGrid, NamesNoPeriodThatATraceCannotHold) {
+  const DipReport slow = {.period = 992232.36, .dips = kSteep.dips, .warped = false};
+  EXPECT_EQ(
+      decide_grid(slow, 50).because,
+      "95 % of the dips are within 2.50 samples a trace, which is not more than an eighth of the dominant period, "
+      "which is longer than a trace");
+  EXPECT_EQ(decide_grid(kSteep, 50).because, decide_grid(kSteep).because);
+}
+
 TEST(GridDocument, SaysWhatWasChosenAndWhy) {
   GridReport report{.dips = kSteep, .structure = StructureReport{kSteep, 0.125, 0.5}, .layers = 300};
   const Json chosen = grid_document(GridChoice::automatic, report);

@@ -33,7 +33,7 @@ std::string trace_counts(const SegyLayout& layout) {
 }
 
 Error not_3d(const std::string& why) {
-  return {ErrorCode::unsupported, "SEG-Y: not a 3D survey after stacking: " + why};
+  return {ErrorCode::unsupported, "SEG-Y: not a stacked 3D survey: " + why};
 }
 
 std::string offsets(const TraceScan& scan) {

@@ -354,7 +354,7 @@ class Refusals(WithFolder):
                             says="none.sgy")
 
     def test_seismic_line(self):
-        self.expect_file_refusal("unsupported", "line.sgy", seismic_line(60, 50))
+        self.expect_file_refusal("unsupported", "line.sgy", seismic_line(60, 50), says="SEG-Y: not a stacked 3D survey: a 2D line")
 
     def test_survey_cut_short(self):
         self.expect_file_refusal("malformed_input", "short.sgy", self.survey.read_bytes()[:-100])

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <new>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -35,6 +36,15 @@ int run(const Command& command) {
   }
 }
 
+/// What is wrong with the command line; CLI11 only says that a command is needed when the word in its place is none.
+std::string usage_problem(const CLI::App& app, const CLI::ParseError& problem) {
+  const auto left = app.remaining();
+  if (!app.get_subcommands().empty() || left.empty() || left.front().starts_with('-')) return problem.what();
+  std::string commands;
+  for (const CLI::App* command : app.get_subcommands({})) commands += " " + command->get_name();
+  return "there is no command " + left.front() + "; commands are" + commands;
+}
+
 }  // namespace
 
 int run_command_line(int argc, const char* const* argv, std::vector<AddCommand> more) {
@@ -56,7 +66,7 @@ int run_command_line(int argc, const char* const* argv, std::vector<AddCommand> 
   } catch (const CLI::Success& wanted) {  // --help, --version
     return app.exit(wanted);
   } catch (const CLI::ParseError& problem) {
-    std::fprintf(stderr, "geosis: usage: %s (geosis --help)\n", one_line(problem.what()).c_str());
+    std::fprintf(stderr, "geosis: usage: %s (geosis --help)\n", one_line(usage_problem(app, problem)).c_str());
     return kUsage;
   }
   for (const auto& [subcommand, command] : commands) {

@@ -12,13 +12,14 @@ std::string flag_of(std::string name) {
   return "--" + name;
 }
 
-std::string listed(const std::vector<GridCandidate>& candidates) {
-  std::string text;
+/// The refusal of a file that several pairs of header bytes fit, with the flags that choose one.
+std::string choices(const std::vector<GridCandidate>& candidates) {
+  std::string text = "SEG-Y: several pairs of header bytes make a grid; give one of";
   for (const auto& candidate : candidates) {
-    text += "; candidate: --inline-byte " + std::to_string(candidate.inline_byte) + " --crossline-byte " +
-            std::to_string(candidate.crossline_byte) + " (" + std::to_string(candidate.shape.inlines) + " x " +
-            std::to_string(candidate.shape.crosslines) + " traces, " + std::to_string(candidate.missing_traces) +
-            " missing)";
+    text += (&candidate == &candidates.front() ? " --inline-byte " : ", --inline-byte ") +
+            std::to_string(candidate.inline_byte) + " --crossline-byte " + std::to_string(candidate.crossline_byte) +
+            " (" + std::to_string(candidate.shape.inlines) + " x " + std::to_string(candidate.shape.crosslines) +
+            " traces, " + std::to_string(candidate.missing_traces) + " missing)";
   }
   return text;
 }
@@ -45,7 +46,7 @@ Result<ImportedVolume> InputArguments::import(Progress& progress) const {
   std::vector<GridCandidate> candidates;
   auto volume = import_volume(**source, options, std::nullopt, progress, &candidates);
   if (volume) return volume;
-  return Error{volume.error().code, path_ + ": " + volume.error().message + listed(candidates)};
+  return Error{volume.error().code, path_ + ": " + (candidates.empty() ? volume.error().message : choices(candidates))};
 }
 
 }  // namespace geosis::server

@@ -7,6 +7,7 @@
 #include <span>
 #include <string_view>
 
+#include "server/documents/ids.h"
 #include "server/documents/request.h"
 
 namespace geosis::server {
@@ -73,9 +74,11 @@ Json list_from_text(std::string_view text) {
 
 RequestArguments::RequestArguments(CLI::App& command) {
   // Two values always: an end may look like a flag (-inf).
-  command.add_option("--range", range_, "the body is {LOW <= amplitude <= HIGH}; -inf and inf are open ends")
-      ->type_name("LOW HIGH");
-  command.add_option("--request", request_path_, "request as JSON; flags win over it")->type_name("FILE");
+  auto* range =
+      command.add_option("--range", range_, "the body is {LOW <= amplitude <= HIGH}; -inf and inf are open ends")
+          ->type_name("LOW HIGH");
+  auto* request =
+      command.add_option("--request", request_path_, "request as JSON; flags win over it")->type_name("FILE");
   command.add_option("--mode", mode_, "exact (default) or sampled: g = (f - LOW)(HIGH - f) on the samples")
       ->type_name("MODE");
   command.add_flag("--no-cap", no_cap_, "leave the body open where it leaves the survey");
@@ -100,6 +103,10 @@ RequestArguments::RequestArguments(CLI::App& command) {
       ->type_name("LIST");
   command.add_option("--attribute-volume", attribute_volume_, "survey that the attribute value is of")
       ->type_name("FILE");
+  command.callback([range, request] {
+    if (range->count() > 0 || request->count() > 0) return;
+    throw CLI::ValidationError("--range LOW HIGH is required, or --request FILE with a range");
+  });
 }
 
 Result<Json> RequestArguments::document() const {
@@ -135,7 +142,11 @@ Result<void> RequestArguments::write_shape(Json& document) const {
     document["velocity"] = *std::move(velocity);
   }
   if (!mode_.empty()) document["mode"] = mode_;
-  if (!grid_.empty()) document["grid"] = grid_;
+  if (!grid_.empty()) {
+    const bool is_known = grid_ == "given" || grid_ == "structural" || grid_ == "auto" || is_id(grid_);
+    if (!is_known) return unreadable("--grid", grid_, "given, structural or auto");
+    document["grid"] = grid_;
+  }
   if (!space_.empty()) document["space"] = space_;
   if (no_cap_) document["cap"] = false;
   if (preview_) document["preview"] = true;

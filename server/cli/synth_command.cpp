@@ -35,7 +35,9 @@ Result<SyntheticSurveyOptions> survey_options(const SynthArguments& arguments) {
   SyntheticSurveyOptions options;
   if (!arguments.dims.empty()) {
     ImportOptions parsed;  // dims are written as for raw files
-    if (auto set = set_import_option(parsed, "dims", arguments.dims); !set) return std::move(set).error();
+    if (!set_import_option(parsed, "dims", arguments.dims)) {
+      return Error{ErrorCode::invalid_argument, "--dims " + arguments.dims + ": expected I,J,K"};
+    }
     options.shape = *parsed.dims;
   }
   for (int axis = 0; axis < 3; ++axis) {

@@ -2,6 +2,7 @@
 import hashlib
 import json
 import os
+import re
 import shutil
 import struct
 import subprocess
@@ -30,13 +31,30 @@ def decoded_counts(path):
     return sum(line.startswith("v ") for line in lines), sum(line.startswith("f ") for line in lines)
 
 
-def seismic_line(traces, samples):
-    """A 2D line as SEG-Y: ensembles numbered along the line, no inline or crossline numbers."""
+def segy_head(samples):
     binary = bytearray(400)
     struct.pack_into(">h", binary, 16, 4000)
     struct.pack_into(">h", binary, 20, samples)
     struct.pack_into(">h", binary, 24, 5)
-    data = bytearray(b"\x40" * 3200) + binary
+    return bytearray(b"\x40" * 3200) + binary
+
+
+def two_grids(lines, traces, samples):
+    """A survey as SEG-Y whose trace headers number two grids, at the bytes 189 and 193 and at 5 and 21."""
+    data = segy_head(samples)
+    for trace in range(lines * traces):
+        header = bytearray(240)
+        struct.pack_into(">ii", header, 188, trace // traces + 1, trace % traces + 1)
+        struct.pack_into(">i", header, 4, trace % lines + 1)
+        struct.pack_into(">i", header, 20, trace // lines + 1)
+        struct.pack_into(">hh", header, 114, samples, 4000)
+        data += header + struct.pack(f">{samples}f", *map(float, range(samples)))
+    return bytes(data)
+
+
+def seismic_line(traces, samples):
+    """A 2D line as SEG-Y: ensembles numbered along the line, no inline or crossline numbers."""
+    data = segy_head(samples)
     for trace in range(traces):
         header = bytearray(240)
         struct.pack_into(">ii", header, 0, trace + 1, trace + 1)
@@ -373,7 +391,51 @@ class Refusals(WithFolder):
                                 "--range", low, high, says="range")
 
     def test_no_range(self):
-        self.expect_refusal("invalid_argument", "reconstruct", self.survey, "--out", self.folder / "out", says="/range")
+        self.expect_usage("--range LOW HIGH is required", "reconstruct", self.survey, "--out", self.folder / "out")
+        request = self.folder / "rangeless.json"
+        request.write_text("{}", encoding="utf-8")
+        self.expect_refusal("invalid_argument", "reconstruct", self.survey, "--request", request, "--out", self.folder / "out",
+                            says="/range")
+
+    def test_a_grid_of_no_such_name_is_not_looked_for_by_id(self):
+        run = geosis("reconstruct", self.survey, *BODY, "--grid", "foo", "--out", self.folder / "out")
+        self.assertEqual((run.returncode, run.stderr),
+                         (1, "geosis: invalid_argument: --grid foo: expected given, structural or auto\n"))
+
+    def test_synth_of_two_dimensions(self):
+        self.expect_refusal("invalid_argument", "synth", self.folder / "flat.sgy", "--dims", "10,10",
+                            says="--dims 10,10: expected I,J,K")
+
+    def test_header_bytes_in_doubt_are_listed_once(self):
+        path = self.folder / "doubt.sgy"
+        path.write_bytes(two_grids(6, 5, 20))
+        run = geosis("info", path)
+        self.assertEqual(run.returncode, 1)
+        self.assertIn("give one of --inline-byte", run.stderr)
+        pairs = re.findall(r"--inline-byte (\d+) --crossline-byte (\d+)", run.stderr)
+        self.assertGreater(len(pairs), 1)
+        for inline, crossline in pairs:
+            self.assertEqual(len(re.findall(rf"\b{inline}\b\D+\b{crossline}\b", run.stderr)), 1, run.stderr)
+            chosen = geosis("info", path, "--inline-byte", inline, "--crossline-byte", crossline)
+            self.assertEqual(chosen.returncode, 0, chosen.stderr)
+
+    def expect_usage(self, says, *arguments):
+        run = geosis(*arguments)
+        self.assertEqual((run.returncode, run.stdout), (2, ""))
+        self.assertRegex(run.stderr, r"\Ageosis: usage: [^\n]+\n\Z")
+        self.assertIn(says, run.stderr)
+
+    def test_a_word_that_is_no_command_is_named(self):
+        self.expect_usage("there is no command frobnicate", "frobnicate")
+        self.expect_usage("there is no command frobnicate", "frobnicate", "--range", "0", "1")
+
+    def test_help_shows_values_and_defaults_as_people_write_them(self):
+        text = geosis("serve", "--help").stdout
+        self.assertRegex(text, r"--log-format text\|json=text")
+        self.assertRegex(text, r"--log-level debug\|info\|warning\|error=info")
+        self.assertRegex(text, r"--cors-origin ORIGIN \.\.\.\s+origins")
+        for ugly in ("ENUM", "->", "[]"):
+            self.assertNotIn(ugly, text)
 
     def test_region_outside_the_volume(self):
         for region in ("0:48,0:55,0:63", "5:5,0:1,0:1", "0:1,0:1", "a"):

@@ -27,10 +27,15 @@ void add_log_flags(CLI::App& command, ServeOptions& options) {
   const std::map<std::string, LogFormat> formats = {{"text", LogFormat::text}, {"json", LogFormat::json}};
   const std::map<std::string, LogLevel> levels = {
       {"debug", LogLevel::debug}, {"info", LogLevel::info}, {"warning", LogLevel::warning}, {"error", LogLevel::error}};
-  command.add_option("--log-format", options.log_format, "of the lines on stderr: text, json")
-      ->transform(CLI::CheckedTransformer(formats));
-  command.add_option("--log-level", options.log_level, "least level of lines: debug, info, warning, error")
-      ->transform(CLI::CheckedTransformer(levels));
+  // Without the transformer's own description, which shows the numbers behind the names.
+  command.add_option("--log-format", options.log_format, "of the lines on stderr")
+      ->transform(CLI::CheckedTransformer(formats).description(""))
+      ->type_name("text|json")
+      ->default_str("text");
+  command.add_option("--log-level", options.log_level, "least level of lines")
+      ->transform(CLI::CheckedTransformer(levels).description(""))
+      ->type_name("debug|info|warning|error")
+      ->default_str("info");
 }
 
 }  // namespace
@@ -84,7 +89,7 @@ Command add_serve_command(CLI::App& app) {
        "time between questions of the gRPC door for its own health; after three without an answer /livez fails")
       ->check(CLI::Range(1, 3600));
   add_log_flags(command, options);
-  flag("--cors-origin", options.cors_origins, "origins whose pages may call")->type_name("ORIGIN ...");
+  command.add_option("--cors-origin", options.cors_origins, "origins whose pages may call")->type_name("ORIGIN");
   flag("--page", arguments->page, "folder of the built page")->type_name("DIR");
   flag("--drain-seconds", arguments->drain_seconds, "how long running answers may take after SIGTERM")
       ->check(CLI::Range(0, 3600));

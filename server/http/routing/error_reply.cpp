@@ -14,7 +14,7 @@ constexpr const char* kRetryAfterSeconds = "1";  // where no middleware knows be
 
 Json refusal_document(int status, ErrorCode code, const std::string& detail) {
   return {{"type", std::string("urn:geosis:problem:") + name_of(code)},
-          {"title", status_phrase(status)},
+          {"title", numbers_of(code).title},
           {"status", status},
           {"detail", detail},
           {"code", name_of(code)}};

@@ -48,5 +48,10 @@ TEST(RefusalReply, TakesAnyBytesAndAsksToRetryLater) {
   EXPECT_NE(reply_head(reply, {}).find("Retry-After: "), std::string::npos);
 }
 
+TEST(RefusalReply, HasTheTitleThatErrorsOfItsTypeHave) {
+  EXPECT_EQ(document_of(refusal_reply({404, "nothing here"}))["title"], numbers_of(ErrorCode::not_found).title);
+  EXPECT_EQ(document_of(refusal_reply({405, "not that"}))["title"], numbers_of(ErrorCode::unsupported).title);
+}
+
 }  // namespace
 }  // namespace geosis::server::http

@@ -24,6 +24,11 @@ bool is_read(const http::Request& request) {
   return request.method == "DELETE" && request.route == "/v1/extractions/*" && !request.query.contains("purge");
 }
 
+/// Neither load nor what the client asked for.
+bool is_our_fault(int status) {
+  return status >= 500 && status != 501 && status != 503 && status != 505;
+}
+
 std::string status_text(int status) {
   return std::to_string(status);
 }
@@ -66,7 +71,7 @@ void RequestGate::answered(const http::Answered& answered) {
                                   {"tenant", answered.tenant}};
   if (!answered.trace_id.empty()) fields.push_back({"trace_id", answered.trace_id});
   if (!answered.is_complete) fields.push_back({"complete", std::string("no")});
-  log_.write(answered.status >= 500 && answered.status != 503 ? LogLevel::error : LogLevel::info, "request", fields);
+  log_.write(is_our_fault(answered.status) ? LogLevel::error : LogLevel::info, "request", fields);
 }
 
 }  // namespace geosis::server

@@ -776,7 +776,13 @@ class Protocol(Refusals):
         answer = CLIENT.call("DELETE", "/v1/volumes")
         self.refused(answer, 405)
         self.assertIn("POST", answer.headers["allow"])
-        self.refused(CLIENT.call("PUT", "/v1/volumes", body=b""), 501)
+        for method, body in (("PUT", b""), ("PUT", b"some"), ("PATCH", b"{}"), ("TRACE", None)):
+            answer = CLIENT.call(method, "/v1/volumes", body=body)
+            self.refused(answer, 405, "unsupported", title="Unsupported")
+            self.assertEqual(answer.headers["allow"], "GET, HEAD, POST, OPTIONS")
+        self.refused(CLIENT.call("PUT", "/v1/nothing", body=b"some"), 404, "not_found", title="Not found")
+        self.refused(CLIENT.get(f"/v1/volumes/{ABSENT}"), 404, "not_found", title="Not found")
+        self.refused(CLIENT.call("BREW", "/v1/volumes"), 501)
 
     def test_a_body_without_length_is_refused(self):
         host = b"Host: " + SERVICE.address.encode()

@@ -206,6 +206,18 @@ class Watching(WithServer):
         self.assertGreater(values["geosis_http_received_bytes_total"], len(SAMPLES))
         self.assertEqual(self.server.call("GET", "/metrics")[0], 404)  # not at the door of everybody
 
+    def test_methods_that_nobody_takes_are_logged_without_alarm(self):
+        for method, path, status in (("PUT", "/v1/volumes?name=x", 405), ("BREW", "/v1/pot?milk=1", 501)):
+            self.assertEqual(self.server.call(method, path, b"1", X_Request_Id=f"odd-{method}")[0], status)
+        for _ in range(200):  # the line is written after the answer
+            lines = [json.loads(line) for line in self.server.log.read_text().splitlines()]
+            found = [line for line in lines if line.get("status") in (405, 501)]
+            if len(found) == 2:
+                break
+            time.sleep(0.05)
+        self.assertEqual([(line["level"], line["method"], line["path"], line["status"]) for line in found],
+                         [("info", "PUT", "/v1/volumes", 405), ("info", "BREW", "/v1/pot", 501)])
+
     def test_log_lines_name_request_and_trace(self):
         trace = "4bf92f3577b34da6a3ce929d0e0e4736"
         _, headers, _ = self.extract(70, X_Request_Id="mine-7", traceparent=f"00-{trace}-00f067aa0ba902b7-01")

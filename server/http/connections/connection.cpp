@@ -119,13 +119,17 @@ void Connection::read_head() {
   if (length == std::string_view::npos) {
     if (in_.size() <= owner_.limits().head.bytes) return;
     const bool has_line = in_.find('\n') != std::string::npos;
-    return refuse(has_line ? Refusal{431, "the request's head is too long"}
-                           : Refusal{414, "the request's target is too long"});
+    return refuse(
+        has_line ? Refusal{431, "the request's head is too long"} : Refusal{414, "the request's target is too long"},
+        seen_request_line(in_));
   }
-  auto head = parse_head(std::string_view(in_).substr(0, length), owner_.limits().head);
+  const std::string_view text = std::string_view(in_).substr(0, length);
+  auto head = parse_head(text, owner_.limits().head);
+  const auto* refusal = std::get_if<Refusal>(&head);
+  const RequestLine line = refusal ? seen_request_line(text) : RequestLine();
   in_.erase(0, length);
   searched_ = 0;
-  if (const auto* refusal = std::get_if<Refusal>(&head)) return refuse(*refusal);
+  if (refusal) return refuse(*refusal, line);
   begin_request(std::get<Head>(std::move(head)));
 }
 
@@ -217,10 +221,13 @@ void Connection::expect(bool is_taken) {
   if (!is_taken) refuse({503, "too many requests are waiting"});
 }
 
-void Connection::refuse(const Refusal& refusal) {
+void Connection::refuse(const Refusal& refusal, const RequestLine& line) {
   closes_ = true;
-  const Request* request = resolved_ ? &resolved_->request : upload_ ? &upload_->resolved.request : nullptr;
-  Reply reply = owner_.dispatcher().refuse(request ? *request : Request{}, refusal);
+  Request seen;
+  seen.method = line.method;
+  seen.path = line.path;
+  const Request* request = resolved_ ? &resolved_->request : upload_ ? &upload_->resolved.request : &seen;
+  Reply reply = owner_.dispatcher().refuse(*request, refusal);
   resolved_.reset();
   upload_.reset();
   body_.reset();

@@ -110,7 +110,9 @@ class Connection {
 
   void expect(bool is_taken);
   /// An answer before, or instead of, a handler's: the connection closes, for its next bytes are in doubt.
-  void refuse(const Refusal& refusal);
+  ///
+  /// line   of a head that was refused.
+  void refuse(const Refusal& refusal, const RequestLine& line = {});
   /// Bytes of all answers that the peer's system has taken: what its sockets hold here is not its merit.
   std::uint64_t bytes_taken() const;
   /// False when the peer reads too slowly.

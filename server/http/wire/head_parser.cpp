@@ -10,9 +10,14 @@ namespace {
 
 constexpr std::string_view kLineEnd = "\r\n";
 constexpr std::array<std::string_view, 6> kMethods = {"GET", "HEAD", "POST", "PATCH", "DELETE", "OPTIONS"};
+constexpr std::array<std::string_view, 2> kMethodsNobodyTakes = {"PUT", "TRACE"};  // 405 at every path
 
 bool is_alphanumeric(char c) {
   return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+bool is_visible(std::string_view text) {
+  return std::all_of(text.begin(), text.end(), [](char c) { return c > 0x20 && c < 0x7f; });
 }
 
 bool is_host(std::string_view text) {
@@ -31,8 +36,7 @@ std::string_view take_line(std::string_view& text) {
 
 std::optional<Refusal> check_target(std::string_view method, std::string_view target, const HeadLimits& limits) {
   if (target.size() > limits.target_bytes) return Refusal{414, "the request's target is too long"};
-  const bool is_visible = std::all_of(target.begin(), target.end(), [](char c) { return c > 0x20 && c < 0x7f; });
-  if (!is_visible || target.find('#') != std::string_view::npos) {
+  if (!is_visible(target) || target.find('#') != std::string_view::npos) {
     return Refusal{400, "the request's target holds characters that must be percent-encoded"};
   }
   if (target.front() != '/' && !(method == "OPTIONS" && target == "*")) {
@@ -49,9 +53,11 @@ std::optional<Refusal> read_request_line(std::string_view line, const HeadLimits
   const std::string_view method = line.substr(0, first), target = line.substr(first + 1, last - first - 1);
   if (!is_token(method)) return Refusal{400, "the request's method is not a token"};
   if (line.substr(last + 1) != "HTTP/1.1") return Refusal{505, "only HTTP/1.1 is spoken here"};
-  if (std::find(kMethods.begin(), kMethods.end(), method) == kMethods.end()) {
-    return Refusal{501, "the request's method is not known here"};
-  }
+  const auto is_in = [method](const auto& methods) {
+    return std::find(methods.begin(), methods.end(), method) != methods.end();
+  };
+  if (!is_in(kMethods) && !is_in(kMethodsNobodyTakes)) return Refusal{501, "the request's method is not known here"};
+  head.keeps_alive = is_in(kMethods);  // what follows the others' heads is nobody's to frame
   head.method = method;
   head.target = target;
   return check_target(method, target, limits);
@@ -102,9 +108,10 @@ std::optional<Refusal> read_framing(Head& head) {
   if (length) {
     if (auto refusal = read_content_length(*length, head)) return refusal;
   }
-  const bool takes_body = head.method == "POST" || head.method == "PATCH" || head.method == "DELETE";
+  const bool needs_length = head.method == "POST" || head.method == "PATCH";
+  const bool takes_body = needs_length || head.method == "DELETE" || head.method == "PUT";
   if (head.has_body() && !takes_body) return Refusal{400, head.method + " with a body"};
-  if (!length && !encoding && takes_body && head.method != "DELETE") {
+  if (!length && !encoding && needs_length) {
     return Refusal{411, "neither Content-Length nor Transfer-Encoding is given"};
   }
   return std::nullopt;
@@ -131,6 +138,17 @@ std::optional<Refusal> read_wishes(Head& head) {
 }
 
 }  // namespace
+
+RequestLine seen_request_line(std::string_view text) {
+  constexpr std::size_t kMost = 200;
+  const std::string_view line = take_line(text);
+  const std::size_t first = line.find(' ');
+  if (first == std::string_view::npos || first > kMost || !is_token(line.substr(0, first))) return {};
+  const std::string_view rest = line.substr(first + 1);
+  const std::string_view path = rest.substr(0, std::min({rest.find_first_of(" ?"), kMost, rest.size()}));
+  return {std::string(line.substr(0, first)),
+          path.starts_with('/') && is_visible(path) ? std::string(path) : std::string()};
+}
 
 std::size_t head_length(std::string_view bytes, std::size_t searched) {
   constexpr std::string_view kHeadEnd = "\r\n\r\n";

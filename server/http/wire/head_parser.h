@@ -28,6 +28,11 @@ struct Refusal {
   std::string detail;
 };
 
+/// What a request line says, where its head is refused.
+struct RequestLine {
+  std::string method, path;
+};
+
 struct HeadLimits {
   std::size_t bytes = 32 * 1024;
   std::size_t target_bytes = 8000;
@@ -45,6 +50,10 @@ std::size_t head_length(std::string_view bytes, std::size_t searched = 0);
 ///
 /// returns  the head, or 400, 411, 414, 415, 417, 431, 501, 505.
 std::variant<Head, Refusal> parse_head(std::string_view text, const HeadLimits& limits = {});
+
+/// Method and path of a head that parse_head refused, for the log: at most 200 visible characters of each, without the
+/// query; empty where there is no such thing.
+RequestLine seen_request_line(std::string_view text);
 
 /// RFC 9110's token: what methods and header names are made of.
 bool is_token(std::string_view text);

@@ -117,6 +117,30 @@ TEST(ParseHead, FindsCloseAmongTheOptionsOfConnection) {
   EXPECT_TRUE(parsed(get("Connection: closed\r\n")).keeps_alive);
 }
 
+TEST(ParseHead, KnowsMethodsThatNoPathTakes) {
+  const Head head = parsed("PUT /a HTTP/1.1\r\nHost: here\r\nContent-Length: 5\r\n\r\n");
+  EXPECT_EQ(head.method, "PUT");
+  EXPECT_EQ(head.content_length, 5U);
+  EXPECT_FALSE(head.keeps_alive);
+  EXPECT_EQ(parsed("PUT /a HTTP/1.1\r\nHost: here\r\n\r\n").method, "PUT");
+  EXPECT_EQ(parsed("TRACE /a HTTP/1.1\r\nHost: here\r\n\r\n").method, "TRACE");
+  EXPECT_EQ(judge("TRACE /a HTTP/1.1\r\nHost: here\r\nContent-Length: 5\r\n\r\n"), 400);
+  EXPECT_EQ(judge("CONNECT a:80 HTTP/1.1\r\nHost: here\r\n\r\n"), 501);
+}
+
+TEST(SeenRequestLine, IsWhatTheLogMayShow) {
+  EXPECT_EQ(seen_request_line("BREW /pot?milk=1 HTTP/1.1\r\n").method, "BREW");
+  EXPECT_EQ(seen_request_line("BREW /pot?milk=1 HTTP/1.1\r\n").path, "/pot");
+  EXPECT_EQ(seen_request_line("GET /liv\x01"
+                              "ez HTTP/1.1\r\n")
+                .path,
+            "");
+  EXPECT_EQ(seen_request_line("GET /" + std::string(5000, 'a')).path.size(), 200U);
+  EXPECT_EQ(seen_request_line("\x16\x03\x01 a b").method, "");
+  EXPECT_EQ(seen_request_line("CONNECT a:80 HTTP/1.1\r\n").path, "");
+  EXPECT_EQ(seen_request_line("").method, "");
+}
+
 TEST(HeadLength, FindsTheEndWhereverThePiecesWereCut) {
   const std::string text = get("A: b\r\n") + "rest";
   for (std::size_t searched = 0; searched < text.size() - 4; ++searched) {

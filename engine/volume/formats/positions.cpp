@@ -152,6 +152,29 @@ Result<void> move_pillars(NumberReader& reader, GridShape shape, const std::file
   return {};
 }
 
+const char* kind_of(const PositionFormat& format) {
+  return format.kind == PositionFormat::Kind::nodes ? "nodes" : "pillars";
+}
+
+const char* type_of(const PositionFormat& format) {
+  return format.is_double ? "float64" : "float32";
+}
+
+Error wrong_size(std::uint64_t bytes, GridShape shape, const PositionFormat& format) {
+  std::string text = std::to_string(bytes) + " bytes; expected " + std::to_string(position_bytes(shape, format)) +
+                     " for the " + std::to_string(shape.inlines) + " x " + std::to_string(shape.crosslines) + " x " +
+                     std::to_string(shape.samples) + " nodes of the volume, as " + kind_of(format) + " of " +
+                     type_of(format);
+  for (const auto kind : {PositionFormat::Kind::nodes, PositionFormat::Kind::pillars}) {
+    for (const bool is_double : {false, true}) {
+      const PositionFormat other = {.kind = kind, .is_double = is_double};
+      if (position_bytes(shape, other) != bytes) continue;
+      text += std::string("; as ") + kind_of(other) + " of " + type_of(other) + " they would fit";
+    }
+  }
+  return bad_positions(text);
+}
+
 Error about_coordinate(int axis, const Error& error) {
   constexpr const char* kNames[] = {"x: ", "y: ", "z: "};
   return {error.code, kNames[axis] + error.message};
@@ -211,11 +234,7 @@ std::uint64_t position_bytes(GridShape shape, const PositionFormat& format) {
 Result<NodeGrid> import_positions(const ByteSource& source, GridShape shape, const PositionFormat& format,
                                   const std::optional<std::filesystem::path>& node_file, int threads,
                                   Progress& progress) {
-  if (const std::uint64_t expected = position_bytes(shape, format); source.size() != expected) {
-    return bad_positions(std::to_string(source.size()) + " bytes; expected " + std::to_string(expected) + " for the " +
-                         std::to_string(shape.inlines) + " x " + std::to_string(shape.crosslines) + " x " +
-                         std::to_string(shape.samples) + " nodes of the volume");
-  }
+  if (source.size() != position_bytes(shape, format)) return wrong_size(source.size(), shape, format);
   auto writer = NodeFileWriter::create(shape, false, node_file);
   if (!writer) return std::move(writer).error();
   NumberReader reader(source, format);

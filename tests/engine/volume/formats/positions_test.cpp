@@ -121,12 +121,23 @@ TEST(ImportPositions, IsTheSameGridHoweverItComes) {
   EXPECT_EQ(fourth->summary.digest, first->summary.digest);
 }
 
+TEST(ImportPositions, SaysWhatFilesOfThatSizeMayBe) {
+  const PositionFormat doubles{.is_double = true};
+  const PositionFormat columns{.kind = PositionFormat::Kind::pillars, .is_double = true};
+  EXPECT_EQ(import(bytes_of(node_numbers(), doubles), {}).error().message,
+            "node positions: 2880 bytes; expected 1440 for the 5 x 4 x 6 nodes of the volume, as nodes of float32; as "
+            "nodes of float64 they would fit");
+  EXPECT_EQ(import(bytes_of(pillar_numbers(), columns), doubles).error().message,
+            "node positions: 1920 bytes; expected 2880 for the 5 x 4 x 6 nodes of the volume, as nodes of float64; as "
+            "pillars of float64 they would fit");
+}
+
 TEST(ImportPositions, RefusesWhatMakesNoGrid) {
   const PositionFormat format{.is_double = true};
   auto bytes = bytes_of(node_numbers(), format);
   bytes.pop_back();
   EXPECT_EQ(import(bytes, format).error().message,
-            "node positions: 2879 bytes; expected 2880 for the 5 x 4 x 6 nodes of the volume");
+            "node positions: 2879 bytes; expected 2880 for the 5 x 4 x 6 nodes of the volume, as nodes of float64");
   auto numbers = node_numbers();
   numbers[3 * 31 + 2] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(import(bytes_of(numbers, format), format).error().message,

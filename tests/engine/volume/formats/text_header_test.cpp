@@ -20,6 +20,12 @@ TEST(TextHeader, ComesBackFromEbcdic) {
   EXPECT_EQ(decode(*block), text);
 }
 
+TEST(TextHeader, HasBracketsWhereEitherCodePageHasThem) {
+  std::string block(kTextBytes, '\x40');
+  block.replace(0, 9, "\xc3\x40\xf1\x40\xad\xd9\xbd\xba\xbb");
+  EXPECT_EQ(decode(block), "C 1 [R][]");
+}
+
 TEST(TextHeader, ReadsAsciiAndBlanksControlCharacters) {
   std::string block(kTextBytes, ' ');
   block.replace(0, 3, "C 1");

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "server/net/listener.h"
 #include "server/service/descriptor_limit.h"
 
 namespace geosis::server {
@@ -43,7 +44,25 @@ http::Router routes_of(const Tenants& tenants, http::ReplyCache& kept, const htt
   return router;
 }
 
+Error about_grpc(const Error& error) {
+  if (error.code != ErrorCode::unavailable) return error;
+  return {error.code, error.message + "; --grpc HOST:PORT takes another address for gRPC, --grpc off none"};
+}
+
+Result<void> check_address(const std::string& address) {
+  if (address.empty()) return {};
+  auto listener = Listener::open(address);
+  if (!listener) return std::move(listener).error();
+  return {};
+}
+
 }  // namespace
+
+Result<void> check_addresses(const ServeOptions& options) {
+  if (auto free = check_address(options.listen); !free) return free;
+  if (auto free = check_address(options.grpc); !free) return about_grpc(free.error());
+  return options.admin == kDefaultAdmin ? Result<void>{} : check_address(options.admin);
+}
 
 Result<std::unique_ptr<TlsCertificates>> open_tls_certificates(const ServeOptions& options, Log& log) {
   if (options.tls_certificate.empty()) return std::unique_ptr<TlsCertificates>();
@@ -92,9 +111,8 @@ Result<std::unique_ptr<rpc::Door>> start_grpc(const ServeOptions& options, const
                                     log.write(LogLevel::debug, "grpc", {{"says", line}});
                                   },
                               .give_back = [&trim] { trim(); }});
-  if (started || started.error().code != ErrorCode::unavailable) return started;
-  return Error{ErrorCode::unavailable,
-               started.error().message + "; --grpc HOST:PORT takes another address for gRPC, --grpc off none"};
+  if (!started) return about_grpc(started.error());
+  return started;
 }
 
 Result<std::unique_ptr<http::Front>> start_admin(const ServeOptions& options, const http::HealthChecks& checks,

@@ -23,6 +23,9 @@ namespace geosis::server {
 /// The certificates of the options' files; null when there are none. The log tells when they are renewed.
 Result<std::unique_ptr<TlsCertificates>> open_tls_certificates(const ServeOptions& options, Log& log);
 
+/// Whether the doors' addresses are free just now. errors   those of Listener::open.
+Result<void> check_addresses(const ServeOptions& options);
+
 /// certificates   null = plain.
 Result<std::unique_ptr<http::Front>> start_front(const ServeOptions& options, const Tenants& tenants,
                                                  http::ReplyCache& kept, const http::HealthChecks& checks,

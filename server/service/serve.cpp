@@ -144,6 +144,10 @@ Result<void> serve(const ServeOptions& options) {
   Log log(options.log_format, options.log_level);
   const auto certificates = open_tls_certificates(options, log);
   if (!certificates) return certificates.error();
+  const auto memory_bytes = memory_to_use(options);
+  if (!memory_bytes) return memory_bytes.error();
+  // Before the store: who cannot serve leaves no new folder behind.
+  if (auto free = check_addresses(options); !free) return free;
   Metrics metrics(service_families());
   auto opened = open_dir_store(options.store);
   if (!opened) return std::move(opened).error();
@@ -152,8 +156,6 @@ Result<void> serve(const ServeOptions& options) {
   store.on_damage([&log](const BlobKey& key, const std::string& why) {
     log.write(LogLevel::error, "damage in the store", {{"blob", key}, {"why", why}});
   });
-  const auto memory_bytes = memory_to_use(options);
-  if (!memory_bytes) return memory_bytes.error();
   MemoryBudget memory(*memory_bytes);
   HeapTrimmer trim;
   JobQueue queue(queue_options(options, memory, trim, log));

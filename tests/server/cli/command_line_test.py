@@ -4,6 +4,7 @@ import json
 import os
 import re
 import shutil
+import socket
 import struct
 import subprocess
 import tempfile
@@ -514,6 +515,19 @@ class Settings(unittest.TestCase):
                        env={**os.environ, "GEOSIS_RANGE": "-inf 0.1", "GEOSIS_NO_CAP": "true"})
         request = json.loads((folder / "out/manifest.json").read_text(encoding="utf-8"))["request"]
         self.assertEqual((request["range"][0], request["cap"]), (None, False))
+
+    def test_a_taken_port_leaves_nothing_behind(self):
+        with socket.socket() as other:
+            other.bind(("127.0.0.1", 0))
+            other.listen()
+            taken = f"127.0.0.1:{other.getsockname()[1]}"
+            for address in ("listen", "grpc", "admin"):
+                free = {"listen": "127.0.0.1:0", "grpc": "off", "admin": "off", address: taken}
+                flags = [f"--{name}={value}" for name, value in free.items()]
+                run = geosis("serve", "--store", self.store, *flags)
+                self.assertEqual(run.returncode, 1)
+                self.assertRegex(run.stderr, rf"\Ageosis: unavailable: cannot listen at {taken}: [^\n]+\n\Z")
+                self.assertFalse(Path(self.store).exists(), flags)
 
     def test_addresses_that_make_no_sense_are_refused(self):
         for address in ("127.0.0.1:99999", "127.0.0.1", "127.0.0.1:http", ":8080", "0.0.0.0:0"):

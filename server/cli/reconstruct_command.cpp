@@ -95,7 +95,10 @@ Result<std::optional<NodeGrid>> open_grid(const ReconstructArguments& arguments,
     return grid;
   }
   const std::string& id = (*grid)->summary.digest;
-  if (options.grid != GridChoice::given && options.grid_id != id) return refusal("it is not that of the files, " + id);
+  if (options.grid_id && *options.grid_id != id) return refusal("the grid in the files is another one, " + id);
+  if (options.grid != GridChoice::given && !options.grid_id) {
+    return refusal(std::string(name_of(options.grid)) + ", but the files give a grid; leave out one of them");
+  }
   options.grid = GridChoice::curvilinear;
   options.grid_id = id;
   const Json document = node_grid_document((*grid)->summary, "", arguments.grid.kind());

@@ -5,6 +5,7 @@
 
 #include "engine/pipeline/grid_stage.h"
 #include "server/app/extractions/extractions.h"
+#include "server/documents/grid_report.h"
 #include "server/documents/ids.h"
 #include "server/documents/node_grid_document.h"
 #include "server/documents/request.h"
@@ -62,6 +63,19 @@ Error stopping() {
 
 Error about_grid(const Error& error) {
   return {error.code, "request /grid: " + error.message};
+}
+
+/// Before the request is read, which would offer ids of grids.
+Result<void> check_one_shot_grid(const Json& request) {
+  const auto grid = request.find("grid");
+  if (grid == request.end() || !grid->is_string()) return {};
+  const auto& name = grid->get_ref<const std::string&>();
+  for (const GridChoice choice : {GridChoice::given, GridChoice::structural, GridChoice::automatic}) {
+    if (name == name_of(choice)) return {};
+  }
+  return Error{
+      is_id(name) ? ErrorCode::unsupported : ErrorCode::invalid_argument,
+      "request /grid: \"" + name + "\"; expected given, structural or auto: a one-shot call has no stored grids"};
 }
 
 }  // namespace
@@ -195,13 +209,11 @@ Result<std::shared_ptr<const FilledStoredVolume>> Extractions::fill(std::shared_
 Result<std::shared_ptr<Extraction>> Extractions::create_transient(const ByteSource& file, const UploadOptions& upload,
                                                                   const Json& request, Progress& progress,
                                                                   std::vector<GridCandidate>& candidates) {
+  if (auto checked = check_one_shot_grid(request); !checked) return std::move(checked).error();
   auto options = parse_request(request);
   if (!options) return std::move(options).error();
   if (options->attribute_volume) {
     return Error{ErrorCode::unsupported, "request /attribute_volume: a one-shot call has no other volume"};
-  }
-  if (options->grid_id) {
-    return Error{ErrorCode::unsupported, "request /grid: a one-shot call has no stored grid"};
   }
   options->threads = threads_;
   auto imported = import_volume(file, upload.import, std::nullopt, progress, &candidates);

@@ -258,6 +258,23 @@ TEST_F(ExtractionsTest, WhyItIsEmptyIsKept) {
   EXPECT_EQ(resource_document(**found).at("empty_because").at("code"), "no_seeded_body");
 }
 
+TEST_F(ExtractionsTest, TransientOneKnowsNoStoredGrid) {
+  Service service(*store);
+  const auto bytes = test::ball_file(6);
+  NoProgress progress;
+  std::vector<GridCandidate> candidates;
+  for (const auto& [grid, code] : {std::pair{std::string(64, '0'), ErrorCode::unsupported},
+                                   std::pair{std::string("foo"), ErrorCode::invalid_argument}}) {
+    const auto refused = service.extractions.create_transient(
+        *memory_source(bytes), test::ball_options(), {{"range", {0, nullptr}}, {"grid", grid}}, progress, candidates);
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().code, code);
+    EXPECT_EQ(
+        refused.error().message,
+        "request /grid: \"" + grid + "\"; expected given, structural or auto: a one-shot call has no stored grids");
+  }
+}
+
 TEST_F(ExtractionsTest, TransientOneKeepsNothing) {
   Service service(*store);
   const auto bytes = test::ball_file(6);

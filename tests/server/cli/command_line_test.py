@@ -227,9 +227,10 @@ class PlacedGrids(WithFolder):
             run = geosis("reconstruct", self.survey, *BODY, "--out", self.folder / "refused", *flags)
             self.assertEqual(run.returncode, 1)
             self.assertIn(expected, run.stderr)
-        for grid in ("structural", "0" * 64):
+        for grid, expected in (("structural", "structural, but the files give a grid"), ("auto", "auto, but the files"),
+                               ("0" * 64, "the grid in the files is another one, ")):
             run = geosis("reconstruct", self.survey, *BODY, "--out", self.folder / "refused", *self.by_nodes, "--grid", grid)
-            self.assertIn("request /grid: it is not that of the files", run.stderr)
+            self.assertIn(f"request /grid: {expected}", run.stderr)
         run = geosis("reconstruct", self.survey, *BODY, "--out", self.folder / "refused", "--grid", "0" * 64)
         self.assertIn("request /grid: give the grid's file", run.stderr)
 

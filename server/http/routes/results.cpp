@@ -6,7 +6,7 @@
 
 #include "server/app/extractions/result_streams.h"
 #include "server/http/connections/pending_replies.h"
-#include "server/http/download_name.h"
+#include "server/http/routes/download_name.h"
 #include "server/http/routes/routes.h"
 #include "server/http/routing/error_reply.h"
 #include "server/http/routing/json_reply.h"

@@ -9,7 +9,7 @@
 #include "server/documents/slice_png.h"
 #include "server/documents/volume_document.h"
 #include "server/http/connections/pending_replies.h"
-#include "server/http/download_name.h"
+#include "server/http/routes/download_name.h"
 #include "server/http/routes/routes.h"
 #include "server/http/routes/upload_options.h"
 #include "server/http/routing/error_reply.h"

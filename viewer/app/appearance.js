@@ -1,7 +1,9 @@
 import { describeBody, toggled } from '../core/bodies.js';
-import { COLOURINGS, colouringFor, colouringsOf, swatchColour } from '../core/colours.js';
+import { COLOURINGS, colouringFor, colouringsOf, RAMP, swatchColour } from '../core/colours.js';
 import { idle } from '../core/extraction_state.js';
-import { boundsOfBody, enlarged, longestSide } from '../core/mesh.js';
+import { formatWhole } from '../core/format.js';
+import { boundsOfBody, enlarged, heightsOf, longestSide } from '../core/mesh.js';
+import { cornersBetween, middleOf } from '../core/placement.js';
 import { LevelView } from '../three/level_view.js';
 import { BodyBox } from '../three/survey_box.js';
 import { BodiesSection } from './bodies_section.js';
@@ -16,7 +18,7 @@ const LEGENDS = { reliability: ['measured', 'filled in'], agreement: ['traces ag
 /**
  * How the surface looks: its colours, and the body that is singled out in the view and in the table.
  *
- * elements     {colouring, legend, selection, bodies}
+ * elements     {colouring, legend, ramp, selection, bodies}
  * onColouring  (name) when somebody chose another colouring.
  */
 export class Appearance {
@@ -28,19 +30,22 @@ export class Appearance {
   #wanted = 'plain';
   #plain = '#cf8a35';
   #selected = null;
+  #isPreview = false;
   #state = idle;
   #unit = '';
   #leastBox = 0;
+  #bounds = null; // of the body that is singled out
+  #vertical = { unit: '', at: () => 0 };
 
   constructor(stage, elements, { onColouring }) {
     this.#stage = stage;
     this.#elements = elements;
     stage.world.add(this.#level, this.#box);
-    // Before the first level is here, the view still shows another extraction's bodies.
-    stage.onClick((raycaster) => this.#state.shown !== null && this.#select(this.#level.bodyAt(raycaster)));
+    // Before the first level is here, the view still shows another extraction's bodies; those of a preview are in no table.
+    stage.onClick((raycaster) => this.#state.shown !== null && !this.#isPreview && this.#select(this.#level.bodyAt(raycaster)));
     this.#section = new BodiesSection(elements.bodies, { onChoose: (body) => this.#select(body) });
     elements.selection.querySelector('#release').addEventListener('click', () => this.#select(null));
-    elements.selection.querySelector('#zoom-to').addEventListener('click', () => stage.lookAt(this.#box));
+    elements.selection.querySelector('#zoom-to').addEventListener('click', () => this.#bounds && stage.lookAt(cornersBetween(this.#bounds)));
     addEventListener('keydown', ({ key }) => key === 'Escape' && this.#select(null));
     elements.colouring.addEventListener('change', ({ target }) => {
       this.colouring = target.value;
@@ -59,10 +64,14 @@ export class Appearance {
     this.#stage.draw();
   }
 
-  /** Unit of lengths in the survey, and its horizontal extent on the display. */
-  placeIn(unit, extent) {
-    this.#unit = unit;
+  /** What it is drawn in, as core/placement.js has it, and its horizontal extent on the display. */
+  placeIn(frame, extent) {
+    const [, , middle] = middleOf(frame);
+    this.#unit = frame.unit;
     this.#leastBox = LEAST_BOX * extent;
+    this.#vertical = { unit: frame.verticalUnit, at: (height) => middle - height };
+    const name = this.#elements.colouring.querySelector('#vertical-name');
+    name.textContent = frame.verticalUnit === 'ms' ? 'Time' : 'Depth';
   }
 
   /** '#rrggbb' of the measured surface and of the filled one, and of lines. */
@@ -75,9 +84,17 @@ export class Appearance {
 
   /** Draws these parts; a selection stays, for bodies have the same numbers at every level. */
   draw(parts) {
+    this.#isPreview = false;
     this.#level.replace(parts);
     this.#placeBox();
     this.#recolour();
+  }
+
+  /** Draws a preview, whose bodies have other numbers than those in the table. */
+  drawPreview(parts) {
+    if (this.#selected !== null) this.#select(null);
+    this.draw(parts);
+    this.#isPreview = true;
   }
 
   show(state) {
@@ -101,36 +118,48 @@ export class Appearance {
 
   #placeBox() {
     const bounds = this.#selected === null ? null : boundsOfBody(this.#level.parts, this.#selected);
-    this.#box.place(bounds && enlarged(bounds, this.#leastBox));
+    this.#bounds = bounds && enlarged(bounds, this.#leastBox);
+    this.#box.place(this.#bounds);
     if (bounds && longestSide(bounds) > NEEDS_NO_BOX * this.#leastBox) this.#box.visible = false;
   }
 
   #recolour() {
     const available = colouringsOf(this.#level.parts);
     const colouring = colouringFor(this.#wanted, available);
-    this.#level.look = { colouring };
+    const heights = colouring === 'depth' ? heightsOf(this.#level.parts) : null;
+    this.#level.look = { colouring, ...heights };
     for (const input of this.#elements.colouring.querySelectorAll('input')) {
       input.checked = input.value === colouring;
       input.parentElement.hidden = !available.includes(input.value);
     }
     this.#elements.colouring.hidden = available.length < 2;
-    this.#showLegend(colouring);
+    this.#showLegend(colouring, heights);
     this.#showSection();
     this.#stage.draw();
   }
 
-  #showLegend(colouring) {
+  #showLegend(colouring, heights) {
     const texts = LEGENDS[colouring];
     this.#elements.legend.hidden = !texts;
     this.#elements.legend.querySelectorAll('span').forEach((span, at) => { span.textContent = texts?.[at] ?? ''; });
+    const { ramp } = this.#elements;
+    ramp.hidden = !heights;
+    if (!heights) return;
+    const { at, unit } = this.#vertical;
+    const [top, bottom] = [heights.top, heights.bottom].map((height) => formatWhole(Math.round(at(height))));
+    ramp.querySelectorAll('span').forEach((span, end) => { span.textContent = end === 0 ? top : `${bottom} ${unit}`; });
+    ramp.querySelector('i').style.background = `linear-gradient(to right, ${RAMP.join(', ')})`;
   }
 
   #showSection() {
     const colouring = colouringFor(this.#wanted, colouringsOf(this.#level.parts));
-    this.#section.show(this.#state, this.#selected, (body) => swatchColour(colouring, body, this.#plain));
+    this.#section.show(this.#state, this.#selected, this.#unit, (body) => swatchColour(colouring, body, this.#plain));
     const entry = this.#state.bodies?.find(({ body }) => body === this.#selected);
     const { selection } = this.#elements;
     selection.hidden = this.#selected === null;
-    selection.querySelector('span').textContent = entry ? describeBody(entry, this.#unit) : `Body ${this.#selected}`;
+    const isLeftOut = this.#bounds === null;
+    selection.querySelector('span').textContent = (entry ? describeBody(entry, this.#unit) : `Body ${this.#selected}`) +
+      (isLeftOut ? '; this level leaves it out' : '');
+    selection.querySelector('#zoom-to').disabled = isLeftOut;
   }
 }

@@ -1,49 +1,42 @@
 import { bodiesTable, describeSmaller } from '../core/bodies.js';
 import { describeBodies } from '../core/extraction_state.js';
+import { RowButtons, rowButton } from './row_buttons.js';
 
 /**
- * The table of bodies. A row is chosen by clicking it or by its button; arrow keys go from row to row.
+ * The table of bodies.
  *
  * onChoose(body)   the number of the row.
  */
 export class BodiesSection {
   #section;
+  #body;
   #rows;
-  #onChoose;
   #shown = null; // what the rows were made of
 
   constructor(section, { onChoose }) {
     this.#section = section;
-    this.#rows = section.querySelector('tbody');
-    this.#onChoose = onChoose;
-    this.#rows.addEventListener('click', ({ target }) => this.#choose(target.closest('tr')));
-    this.#rows.addEventListener('keydown', (event) => this.#onKey(event));
+    this.#body = section.querySelector('tbody');
+    this.#rows = new RowButtons(this.#body, (row) => onChoose(Number(row.dataset.body)));
   }
 
-  /** state, selected and a function from a body to its swatch's colour. */
-  show(state, selected, swatchOf) {
-    const note = describeBodies(state);
-    this.#text('#bodies-note', note);
+  /** state, selected, the unit of lengths and a function from a body to its swatch's colour. */
+  show(state, selected, unit, swatchOf) {
+    this.#text('#bodies-note', describeBodies(state));
     this.#section.querySelector('#bodies-note').classList.toggle('problem', state.bodiesProblem !== '');
     this.#section.querySelector('.table-frame').hidden = !state.bodies?.length;
-    if (this.#shown?.bodies !== state.bodies || this.#shown?.selected !== selected) this.#fill(state.bodies ?? [], selected);
+    if (this.#shown?.bodies !== state.bodies || this.#shown?.selected !== selected) this.#fill(state.bodies ?? [], selected, unit);
     this.#shown = { bodies: state.bodies, selected };
-    for (const row of this.#rows.rows) row.querySelector('i').style.background = swatchOf(Number(row.dataset.body));
+    for (const row of this.#body.rows) row.querySelector('i').style.background = swatchOf(Number(row.dataset.body));
   }
 
-  #fill(bodies, selected) {
-    const focused = this.#rows.contains(document.activeElement) ? document.activeElement.closest('tr').dataset.body : null;
-    const { rows, smaller } = bodiesTable(bodies, selected);
-    this.#rows.replaceChildren(...rows.map(rowOf));
+  #fill(bodies, selected, unit) {
+    const { unit: shown, rows, smaller } = bodiesTable(bodies, selected, unit);
+    const elements = rows.map(rowOf);
+    const current = elements.find((row) => row.ariaCurrent === 'true');
+    this.#rows.fill(elements, ({ dataset }) => dataset.body, current);
     this.#text('#bodies-smaller', describeSmaller(smaller));
-    const reachable = this.#row(focused) ?? this.#row(selected) ?? this.#rows.rows[0];
-    if (reachable) buttonOf(reachable).tabIndex = 0;
-    if (focused !== null && reachable) buttonOf(reachable).focus();
-    this.#row(selected)?.scrollIntoView({ block: 'nearest' });
-  }
-
-  #row(body) {
-    return body === null ? null : this.#rows.querySelector(`tr[data-body="${body}"]`);
+    this.#section.querySelector('#volume-unit').textContent = shown;
+    current?.scrollIntoView({ block: 'nearest' });
   }
 
   #text(selector, text) {
@@ -51,39 +44,13 @@ export class BodiesSection {
     if (element.textContent !== text) element.textContent = text;
     element.hidden = text === '';
   }
-
-  #choose(row) {
-    if (row) this.#onChoose(Number(row.dataset.body));
-  }
-
-  #onKey(event) {
-    const row = event.target.closest('tr');
-    const targets = {
-      ArrowUp: row.previousElementSibling, ArrowDown: row.nextElementSibling,
-      Home: this.#rows.firstElementChild, End: this.#rows.lastElementChild,
-    };
-    const target = targets[event.key];
-    if (!target) return;
-    event.preventDefault();
-    buttonOf(row).tabIndex = -1;
-    buttonOf(target).tabIndex = 0;
-    buttonOf(target).focus();
-  }
 }
-
-const buttonOf = (row) => row.querySelector('button');
 
 function rowOf({ body, isSelected, cells }) {
   const row = document.createElement('tr');
   row.dataset.body = body;
   if (isSelected) row.setAttribute('aria-current', 'true');
-  const button = document.createElement('button');
-  button.type = 'button';
-  button.tabIndex = -1;
-  button.setAttribute('aria-pressed', String(isSelected));
-  button.setAttribute('aria-label', `Body ${body}: single out`);
-  button.append(document.createElement('i'), String(body));
-  row.insertCell().append(button);
+  row.insertCell().append(rowButton(`Body ${body}: single out`, isSelected, document.createElement('i'), String(body)));
   for (const text of cells) row.insertCell().textContent = text;
   return row;
 }

@@ -3,7 +3,7 @@ import { displayTransform, middleOf } from '../core/placement.js';
 /**
  * Shows previews while somebody moves the ends of the range: one at a time, and after it the newest that was asked for.
  *
- * onParts(parts)   a preview is decoded.
+ * onParts(parts)   a preview is decoded; none where nothing lies in the range.
  */
 export class Preview {
   #api;
@@ -12,6 +12,7 @@ export class Preview {
   #wanted = null;
   #running = null; // AbortController
   #isActive = false;
+  #isShown = false;
 
   constructor(api, decoder, { onParts }) {
     this.#api = api;
@@ -24,6 +25,11 @@ export class Preview {
     return this.#isActive;
   }
 
+  /** Whether one is on the screen. */
+  get isShown() {
+    return this.#isShown;
+  }
+
   /** request   as previewOf() makes it.  frame   what to draw in. */
   show(volume, request, frame) {
     this.#isActive = true;
@@ -34,6 +40,7 @@ export class Preview {
   /** What is on its way is not shown any more. */
   stop() {
     this.#isActive = false;
+    this.#isShown = false;
     this.#wanted = null;
     this.#running?.abort();
     this.#running = null;
@@ -47,7 +54,9 @@ export class Preview {
       this.#wanted = null;
       try {
         const parts = await this.#follow(wanted, controller.signal);
-        if (!controller.signal.aborted) this.#onParts(parts);
+        if (controller.signal.aborted) continue;
+        this.#isShown = true;
+        this.#onParts(parts);
       } catch {
         // The body itself comes when the handle is released, and tells what is wrong.
       }

@@ -1,6 +1,7 @@
 import {
-  bodiesCame, bodiesFailed, failed, idle, levelKnown, levelShown, manifestCame, progressed, started,
+  bodiesCame, bodiesFailed, failed, idle, levelCame, levelChosen, levelKnown, manifestCame, progressed, started,
 } from '../core/extraction_state.js';
+import { asSentence } from '../core/format.js';
 import { Latest } from '../core/latest.js';
 import { LevelAssembly } from '../core/level_assembly.js';
 import { displayTransform, middleOf } from '../core/placement.js';
@@ -9,13 +10,14 @@ import { Problem } from '../core/problem.js';
 /**
  * Asks for a body and follows it until its last level is drawn. A new request takes the place of the running one.
  *
- * onState(state)  after every change.     onLevel(parts)  a finer level is complete.
+ * onState(state)  after every change.     onLevel(parts)  another level is to be drawn.
  */
 export class Reconstruction {
   #api;
   #decoder;
   #newest = new Latest();
   #state = idle;
+  #levels = new Map(); // level -> its decoded parts
   #onState;
   #onLevel;
 
@@ -28,18 +30,27 @@ export class Reconstruction {
 
   /** request   as requestOf() makes it.  frame   what to draw in. */
   async start(volume, request, frame) {
+    this.#levels = new Map();
     this.#set(started());
     try {
       await this.#newest.run((signal) => this.#follow(volume, request, frame, signal));
     } catch (error) {
-      this.#set(failed(this.#state, error instanceof Problem ? error.message : `Something went wrong: ${error.message}`));
+      this.#set(failed(this.#state, error instanceof Problem ? error.message : asSentence(`Something went wrong: ${error.message}`)));
     }
   }
 
   /** Forgets what is running and what is shown. */
   stop() {
     this.#newest.abort();
+    this.#levels = new Map();
     this.#set(idle);
+  }
+
+  /** Shows a level that is here. */
+  choose(level) {
+    const before = this.#state.shown;
+    this.#set(levelChosen(this.#state, level));
+    if (this.#state.shown !== before) this.#onLevel(this.#levels.get(level));
   }
 
   #set(state) {
@@ -82,8 +93,10 @@ export class Reconstruction {
     const mesh = await this.#decoder.decode(part.bytes, display);
     const complete = assembly.add(part, mesh);
     if (!complete || signal.aborted) return;
-    this.#onLevel(complete.parts);
-    this.#set(levelShown(this.#state, complete.level));
+    this.#levels.set(complete.level, complete.parts);
+    const next = levelCame(this.#state, complete.level);
+    if (next.shown === complete.level) this.#onLevel(complete.parts);
+    this.#set(next);
   }
 
   /** Numbers and progress come beside the meshes. When this channel fails, the stream still carries everything. */

@@ -83,8 +83,9 @@ export class GeosisApi {
     return answer.blob();
   }
 
-  uploadUrl(name) {
-    return this.#url(`/v1/volumes?format=auto&name=${encodeURIComponent(name)}`);
+  /** options   import options by name, where the file alone does not tell. */
+  uploadUrl(name, options = {}) {
+    return this.#url(`/v1/volumes?${new URLSearchParams({ format: 'auto', name, ...options })}`);
   }
 
   /**

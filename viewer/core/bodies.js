@@ -1,4 +1,4 @@
-import { formatAmplitude, formatCount, formatShare, formatVolume } from './format.js';
+import { counted, formatAmplitude, formatCount, formatShare, formatVolume } from './format.js';
 
 /** The bodies of an extraction as the service lists them, largest first, and the one that is singled out (its number, or null). */
 
@@ -12,18 +12,25 @@ export function toggled(selected, body) {
 /**
  * The table: the first bodies, and the selected one wherever it stands.
  *
- * returns  {rows: [{body, isSelected, cells: [samples, mean amplitude, tunnels, filled]}], smaller: how many are not in it}
+ * returns  {unit: of the volumes, rows: [{body, isSelected, cells: [volume, mean amplitude, tunnels, filled]}],
+ *           smaller: how many are not in it}
  */
-export function bodiesTable(bodies, selected, limit = ROWS) {
+export function bodiesTable(bodies, selected, unit = '', limit = ROWS) {
   const listed = bodies.slice(0, limit);
   const beyond = bodies.slice(limit).find(({ body }) => body === selected);
   if (beyond) listed.push(beyond);
-  return { rows: listed.map((entry) => rowOf(entry, selected)), smaller: bodies.length - listed.length };
+  const hasLengths = unit !== '' && bodies.every(({ volume }) => isThere(volume));
+  const rows = listed.map((entry) => rowOf(entry, selected, hasLengths));
+  return { unit: hasLengths ? `${unit}³` : 'voxels', rows, smaller: bodies.length - listed.length };
 }
 
-function rowOf(entry, selected) {
-  const { body, voxels, amplitude, genus, interpolated_share: filled } = entry;
-  const cells = [formatCount(voxels), formatAmplitude(amplitude?.mean), String(genus ?? '–'), formatShare(filled ?? 0)];
+const isThere = (value) => value !== null && value !== undefined;
+
+function rowOf(entry, selected, hasLengths) {
+  const { body, volume, volume_voxels: voxels, amplitude, genus, interpolated_share: filled } = entry;
+  const cells = [
+    formatVolume(hasLengths ? volume : voxels), formatAmplitude(amplitude?.mean), isThere(genus) ? formatCount(genus) : '–', formatShare(filled ?? 0),
+  ];
   return { body, isSelected: body === selected, cells };
 }
 
@@ -37,14 +44,10 @@ export function describeSmaller(smaller) {
 export function describeBody(entry, unit) {
   const { body, voxels, volume, amplitude, genus, cavities, interpolated_share: filled } = entry;
   const facts = [`${counted(voxels, 'sample')}`];
-  if (volume !== null && volume !== undefined) facts.push(formatVolume(volume, unit));
+  if (isThere(volume)) facts.push(formatVolume(volume, unit));
   if (amplitude) facts.push(`amplitude ${formatAmplitude(amplitude.min)} to ${formatAmplitude(amplitude.max)}`);
   if (genus > 0) facts.push(counted(genus, 'tunnel'));
   if (cavities > 0) facts.push(counted(cavities, 'cavity', 'cavities'));
   if (filled > 0) facts.push(`${formatShare(filled)} filled in`);
   return `Body ${body}: ${facts.join(', ')}`;
-}
-
-function counted(count, one, many = `${one}s`) {
-  return `${formatCount(count)} ${count === 1 ? one : many}`;
 }

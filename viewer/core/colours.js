@@ -3,10 +3,11 @@
  *
  * plain        one colour for all
  * bodies       one for each body
+ * depth        from light at the top of the surface to dark at its bottom
  * reliability  the plain one where samples were measured, pale where they were filled in
  * agreement    the plain one where traces agree along the reflectors, pale where layers are likely to be mis-tied
  */
-export const COLOURINGS = Object.freeze(['plain', 'bodies', 'reliability', 'agreement']);
+export const COLOURINGS = Object.freeze(['plain', 'bodies', 'depth', 'reliability', 'agreement']);
 
 /** Reliability of what was measured; everything below was filled in, wholly or in part. */
 const MEASURED = 255;
@@ -37,6 +38,9 @@ const SHADINGS = Object.freeze({ reliability: filledShare, agreement: doubtfulSh
  */
 const PALETTE = Object.freeze(['#cf8a35', '#377ee3', '#9cc57a', '#9260b0', '#3abdee', '#924f1b', '#4d7b7c', '#ee6aa6']);
 
+/** The colours of the depth from top to bottom: lightness falls all the way, so that it can be read without telling hues apart. */
+export const RAMP = Object.freeze(['#f7d35c', '#ee9a45', '#d9605a', '#a8417f', '#6d3c93', '#46479b']);
+
 /** Each further round through the palette is mixed with white or black, so that neighbours in the list still differ. */
 const ROUNDS = Object.freeze([
   { towards: 0, share: 0 },
@@ -50,6 +54,15 @@ const COLOURS = Object.freeze(ROUNDS.flatMap(({ towards, share }) =>
 ));
 const LINEAR_COLOURS = Object.freeze(COLOURS.map(linearOf));
 
+/** The colours of the depth as the renderer has them, finely stepped. */
+const SHADES = 256;
+const DEPTHS = Object.freeze(Array.from({ length: SHADES }, (_, shade) => {
+  const place = (shade / (SHADES - 1)) * (RAMP.length - 1);
+  const before = Math.min(RAMP.length - 2, Math.floor(place));
+  const [from, to] = [channelsOf(RAMP[before]), channelsOf(RAMP[before + 1])];
+  return linearOf(hexOf(from.map((channel, at) => channel + (place - before) * (to[at] - channel))));
+}));
+
 /** A body's colour, the same for the same number always. */
 export function bodyColour(body) {
   return COLOURS[body % COLOURS.length];
@@ -62,7 +75,7 @@ export function swatchColour(colouring, body, plain) {
 
 /** The colourings that these parts have the attributes for. */
 export function colouringsOf(parts) {
-  const attributes = { plain: 'positions', bodies: 'body', reliability: 'reliability', agreement: 'agreement' };
+  const attributes = { plain: 'positions', bodies: 'body', depth: 'positions', reliability: 'reliability', agreement: 'agreement' };
   return COLOURINGS.filter((name) => name === 'plain' || parts.some((part) => part[attributes[name]]));
 }
 
@@ -77,12 +90,14 @@ export function colouringFor(wanted, available) {
  * part        {positions, body: (n) uint32 | null, reliability, agreement: (n) uint8 | null}; without reliability all
  *             was measured, without agreement samples are joined along the axes
  * plain, pale '#rrggbb' of what is to be trusted and of what is not
+ * top, bottom heights on the display that have the first and the last colour of the depth
  */
-export function vertexColours(part, { colouring, plain, pale }) {
+export function vertexColours(part, { colouring, plain, pale, top, bottom }) {
   if (colouring === 'plain') return null;
   const colours = new Float32Array(part.positions.length);
   const shares = paleShares(part, colouring);
   if (colouring === 'bodies' && part.body) paintBodies(colours, part.body);
+  else if (colouring === 'depth') paintDepths(colours, part.positions, top, bottom);
   else if (shares) paintShaded(colours, part[colouring], shares, linearOf(plain), linearOf(pale));
   else paintAll(colours, linearOf(plain));
   return colours;
@@ -103,6 +118,17 @@ function paleShares(part, colouring) {
 function paintBodies(colours, body) {
   for (let vertex = 0, at = 0; vertex < body.length; ++vertex, at += 3) {
     const [red, green, blue] = LINEAR_COLOURS[body[vertex] % LINEAR_COLOURS.length];
+    colours[at] = red;
+    colours[at + 1] = green;
+    colours[at + 2] = blue;
+  }
+}
+
+function paintDepths(colours, positions, top, bottom) {
+  const scale = top > bottom ? (SHADES - 1) / (top - bottom) : 0;
+  for (let at = 0; at < positions.length; at += 3) {
+    const shade = Math.round((top - positions[at + 1]) * scale);
+    const [red, green, blue] = DEPTHS[Math.min(SHADES - 1, Math.max(0, shade))];
     colours[at] = red;
     colours[at + 1] = green;
     colours[at + 2] = blue;

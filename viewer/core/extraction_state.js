@@ -1,14 +1,16 @@
-import { formatCount, formatShare } from './format.js';
+import { counted, formatCount, formatShare } from './format.js';
 
 /**
  * What is known of the extraction on the screen. A value: every change makes a new one.
  *
  * phase     idle | waiting | running | done | failed
  * levels    the manifest's level entries known so far, coarsest first
+ * here      the levels that are decoded; shown: the one on the screen; chosen: by somebody, null = the finest that is here
  * bodies    the entries of its bodies, largest first; null until they are here, and when they could not be had
  */
 export const idle = Object.freeze({
-  phase: 'idle', stage: '', progress: 0, levels: [], manifest: null, shown: null, problem: '', bodies: null, bodiesProblem: '',
+  phase: 'idle', stage: '', progress: 0, levels: [], manifest: null, here: [], shown: null, chosen: null, problem: '',
+  bodies: null, bodiesProblem: '',
 });
 
 export function started() {
@@ -28,8 +30,15 @@ export function levelKnown(state, entry) {
   return { ...state, levels: [...others, entry].sort((a, b) => b.level - a.level) };
 }
 
-export function levelShown(state, level) {
-  return { ...state, shown: level };
+/** A level is decoded, a finer one than those before: it is shown, unless somebody has chosen another. */
+export function levelCame(state, level) {
+  return { ...state, here: [...state.here, level], shown: state.chosen ?? level };
+}
+
+/** Somebody chose a level that is here. Whoever chooses the finest sees those that are still to come, too. */
+export function levelChosen(state, level) {
+  if (!state.here.includes(level)) return state;
+  return { ...state, shown: level, chosen: level === Math.min(...state.here) ? null : level };
 }
 
 export function manifestCame(state, manifest) {
@@ -60,10 +69,15 @@ export function describe(state) {
     case 'running':
       return `${STAGES[state.stage] ?? 'Working'} …`;
     case 'done':
-      return state.manifest.empty ? describeNothing(state.manifest) : describeSurface(state.levels.at(-1));
+      return state.manifest.empty ? describeNothing(state.manifest) : describeSurface(state.levels.at(-1), state.bodies);
     default:
       return state.problem;
   }
+}
+
+/** The same sentence while a preview is on the screen. */
+export function describePreview(isEmpty) {
+  return isEmpty ? 'Preview: nothing lies in this range.' : 'Preview: rough, topology not promised.';
 }
 
 const STAGES = {
@@ -89,7 +103,10 @@ export function describeBodies({ phase, manifest, bodies, bodiesProblem }) {
   if (phase !== 'done') return 'Nothing reconstructed yet.';
   if (manifest.empty) return 'None.';
   if (!bodies) return 'Counting …';
-  return bodies.length === 1 ? 'One body.' : `${formatCount(bodies.length)} bodies. Click one, here or in the view, to single it out.`;
+  const count = bodies.length === 1 ? 'One body' : `${formatCount(bodies.length)} bodies`;
+  const surfaces = bodies.reduce((sum, { components }) => sum + (components ?? 1), 0);
+  const inside = surfaces > bodies.length ? `, and cavities inside: ${formatCount(surfaces)} surfaces` : '';
+  return `${count}${inside}.${bodies.length > 1 ? ' Click one, here or in the view, to single it out.' : ''}`;
 }
 
 /** Which grid it lies on, why, and how far that is to be trusted; nothing to say on the survey's own. */
@@ -108,8 +125,9 @@ function describeFolds({ folded_share: folded }) {
   return folded > 0 ? ` ${formatShare(folded)} of its cells are folded: the surface may cross itself there.` : '';
 }
 
-function describeSurface({ components, genus, manifold }) {
-  const pieces = `${components} ${components === 1 ? 'piece' : 'pieces'}`;
-  const tunnels = genus > 0 ? `, ${genus} ${genus === 1 ? 'tunnel' : 'tunnels'}` : '';
-  return `Done: ${pieces}${tunnels}${manifold ? '' : '; not a manifold'}.`;
+/** Bodies, once they are counted; surfaces until then, which may be more: one around each body and one around each cavity. */
+function describeSurface({ components, genus, manifold }, bodies) {
+  const count = bodies ? counted(bodies.length, 'body', 'bodies') : counted(components, 'surface');
+  const tunnels = genus > 0 ? `, ${counted(genus, 'tunnel')}` : '';
+  return `Done: ${count}${tunnels}${manifold ? '' : '; not a manifold'}.`;
 }

@@ -1,10 +1,20 @@
-/** Numbers for people. */
+/** Numbers and sentences for people. */
 
 const groups = new Intl.NumberFormat('en', { useGrouping: true });
 
 /** 31970 -> "31 970", with a narrow space that does not break. */
 export function formatCount(count) {
   return groups.format(count).replaceAll(',', '\u202f');
+}
+
+/** "1 body", "31 970 bodies" */
+export function counted(count, one, many = `${one}s`) {
+  return `${formatCount(count)} ${count === 1 ? one : many}`;
+}
+
+/** A whole number that may be negative, with a minus sign. */
+export function formatWhole(number) {
+  return formatCount(number).replace('-', '−');
 }
 
 export function formatBytes(bytes) {
@@ -35,4 +45,11 @@ export function formatAmplitude(value) {
 export function formatVolume(volume, unit = '') {
   if (unit === 'm' && volume >= 1e8) return `${Number((volume / 1e9).toPrecision(3))} km³`;
   return `${formatCount(Number(volume.toPrecision(3)))}${unit && ` ${unit}³`}`;
+}
+
+/** What a server said, with a capital and a full stop; a name with an underscore stays as it is written. */
+export function asSentence(text) {
+  const trimmed = text.trim();
+  const begun = /^[a-z]+(?![\w./])/.test(trimmed) ? trimmed[0].toUpperCase() + trimmed.slice(1) : trimmed;
+  return /[.!?…]$/.test(begun) ? begun : `${begun}.`;
 }

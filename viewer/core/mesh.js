@@ -90,3 +90,15 @@ export function enlarged({ low, high }, least) {
 export function longestSide({ low, high }) {
   return Math.max(...high.map((end, axis) => end - low[axis]));
 }
+
+/** The heights between which the vertices of all parts lie, {bottom, top}; null when there are none. */
+export function heightsOf(parts) {
+  let [bottom, top] = [Infinity, -Infinity];
+  for (const { positions } of parts) {
+    for (let at = 1; at < positions.length; at += 3) {
+      bottom = Math.min(bottom, positions[at]);
+      top = Math.max(top, positions[at]);
+    }
+  }
+  return bottom <= top ? { bottom, top } : null;
+}

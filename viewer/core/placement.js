@@ -12,6 +12,11 @@ export function cornersOf(dims) {
   return Array.from({ length: 8 }, (_, corner) => dims.map((count, axis) => ((corner >> axis) & 1) * (count - 1)));
 }
 
+/** The 8 corners of a box, numbered in the same way. */
+export function cornersBetween({ low, high }) {
+  return Array.from({ length: 8 }, (_, corner) => low.map((end, axis) => ((corner >> axis) & 1 ? high[axis] : end)));
+}
+
 /** The 12 edges of the box as pairs of corner numbers. */
 export const BOX_EDGES = Object.freeze(
   [0, 1, 2].flatMap((axis) =>
@@ -28,20 +33,28 @@ export function toWorld(transform, [i, j, k]) {
  *
  * isPlaced   levels have coordinates of their own, and only their manifest's transform takes them to the world.
  */
-export function surveyFrame({ dims, axes, geometry }) {
+export function surveyFrame({ dims, axes, geometry }, velocity = null) {
+  const metres = metresPerMillisecond(velocity);
+  const { first, step, unit } = axes.sample;
+  const sample = { first: (first ?? 0) * metres, step: (step ?? 1) * metres, unit: velocity ? 'm' : unit };
   return {
-    dims, axes, names: ['Inline', 'Crossline', verticalName(axes.sample.unit)], transform: geometry.transform, unit: geometry.unit, isPlaced: false,
+    dims, axes: { ...axes, sample }, names: ['Inline', 'Crossline', verticalName(sample.unit)],
+    transform: geometry.transform?.map((number, at) => (at >= 8 && at < 12 ? number * metres : number)),
+    unit: geometry.unit, verticalUnit: sample.unit, isPlaced: false,
   };
 }
 
 /** The same around a grid whose nodes somebody has placed: the box of its nodes. */
-export function gridFrame({ box: [low, high], times }, { geometry }) {
+export function gridFrame({ box, times }, { geometry }, velocity = null) {
+  const metres = metresPerMillisecond(times ? velocity : null);
+  const [low, high] = box.map(([x, y, z]) => [x, y, z * metres]);
+  const verticalUnit = times && !velocity ? 'ms' : geometry.unit;
   const sides = high.map((end, axis) => end - low[axis]);
   const axis = (number) => ({ first: low[number], step: sides[number] });
   const transform = [0, 1, 2].flatMap((row) => [...[0, 1, 2].map((column) => (row === column ? sides[row] : 0)), low[row]]);
   return {
-    dims: [2, 2, 2], axes: { inline: axis(0), crossline: axis(1), sample: axis(2) }, names: ['x', 'y', verticalName(times ? 'ms' : geometry.unit)],
-    transform: [...transform, 0, 0, 0, 1], unit: geometry.unit, isPlaced: true,
+    dims: [2, 2, 2], axes: { inline: axis(0), crossline: axis(1), sample: axis(2) }, names: ['x', 'y', verticalName(verticalUnit)],
+    transform: [...transform, 0, 0, 0, 1], unit: geometry.unit, verticalUnit, isPlaced: true,
   };
 }
 
@@ -81,40 +94,33 @@ export function distanceToSee(points, halfWidth, halfHeight) {
   return Math.max(...points.map(([x, y, z]) => z + Math.max(Math.abs(x) / halfWidth, Math.abs(y) / halfHeight)));
 }
 
-/** A vertical exaggeration that shows flat surveys at two fifths of their width: 1, 1.5, 2, 2.5 ... 20. */
+/** The vertical exaggerations that can be chosen. */
+export const EXAGGERATIONS = Object.freeze([
+  0.01, 0.02, 0.03, 0.05, 0.07, 0.1, 0.15, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 2.5, 3, 3.5, 4, 5, 6, 7, 8, 10, 12, 15, 20,
+]);
+
+/** Heights in widths: flat surveys are raised to the first, and what is taller than the second is lowered to it. */
+const FLAT = 0.4;
+const TALL = 1.25;
+
+/** Which of the exaggerations shows a survey best. */
 export function suggestedExaggeration({ horizontal, vertical }) {
   if (!(vertical > 0) || !(horizontal > 0)) return 1;
-  return Math.min(20, Math.max(1, Math.round((0.8 * horizontal) / vertical) / 2));
+  const height = vertical / horizontal;
+  return nearestExaggeration(height < FLAT ? FLAT / height : Math.min(1, TALL / height));
 }
 
-/**
- * Texts of the box: each axis' name at the middle of one edge, its first and last number at the ends; `at` in index
- * coordinates, a little outside of the box, so that the texts of two axes do not meet at a corner.
- */
-export function axisLabels({ dims, axes, names }) {
-  const last = dims.map((count) => count - 1);
-  const before = last.map((end) => -LABEL_MARGIN * end);
-  const after = last.map((end) => (1 + LABEL_MARGIN) * end);
-  return [
-    ...labelsOf(names[0], axes.inline, 0, [0, after[1], last[2]], last[0]),
-    ...labelsOf(names[1], axes.crossline, 1, [before[0], 0, last[2]], last[1]),
-    ...labelsOf(names[2], axes.sample, 2, [before[0], before[1], 0], last[2]),
-  ];
+function nearestExaggeration(factor) {
+  const distance = (other) => Math.abs(Math.log(other / factor));
+  return EXAGGERATIONS.reduce((best, other) => (distance(other) < distance(best) ? other : best));
 }
 
-const LABEL_MARGIN = 0.06;
+/** Two-way time to depth. */
+function metresPerMillisecond(velocity) {
+  return velocity ? velocity / 2000 : 1;
+}
 
 function verticalName(unit) {
   if (unit === 'ms') return 'Time, ms';
   return unit ? `Depth, ${unit}` : 'Sample';
-}
-
-function labelsOf(name, { first, step }, axis, edge, last) {
-  const place = (index) => edge.map((coordinate, other) => (other === axis ? index : coordinate));
-  const number = (index) => String(Number(((first ?? 0) + index * (step ?? 1)).toFixed(2)));
-  return [
-    { text: number(0), at: place(0), kind: 'tick' },
-    { text: name, at: place(last / 2), kind: 'name' },
-    { text: number(last), at: place(last), kind: 'tick' },
-  ];
 }

@@ -1,4 +1,6 @@
-/** What went wrong, as the service tells it (problem+json) or as the network does, in a sentence for people. */
+import { asSentence, formatCount } from './format.js';
+
+/** What went wrong, as the service tells it (problem+json) or as the network does, in sentences for people. */
 export class Problem extends Error {
   /** fields  a problem document: {title, status, detail, code, pointer, candidates}; all may be absent. */
   constructor(fields) {
@@ -11,22 +13,24 @@ export class Problem extends Error {
 }
 
 const ADVICE = {
-  not_found: 'It may have been deleted meanwhile; reload the page.',
+  not_found: 'It may have been deleted meanwhile.',
   limit_exceeded: 'It is larger than this server accepts.',
   unavailable: 'The server is busy; try again in a moment.',
   deadline_exceeded: 'It took too long; try again.',
 };
 
+const CHOICE = 'This file can be read in more than one way. Which trace header bytes number its inlines and crosslines?';
+
 function sentence({ title, detail, code, candidates }) {
-  const parts = [detail || title || 'The server did not answer as expected.'];
-  if (ADVICE[code]) parts.push(ADVICE[code]);
-  if (candidates?.length) parts.push(`It could be read as ${candidates.map(describeCandidate).join(' or ')}.`);
-  return parts.join(' ');
+  if (candidates?.length > 1) return CHOICE;
+  const said = asSentence(detail || title || 'The server did not answer as expected.');
+  return ADVICE[code] ? `${said} ${ADVICE[code]}` : said;
 }
 
-/** One way to read a refused survey: "160 × 200 × 160 (inline at byte 189, crossline at byte 193)". */
-export function describeCandidate({ dims, inline_byte, crossline_byte }) {
-  return `${dims.join(' × ')} (inline at byte ${inline_byte}, crossline at byte ${crossline_byte})`;
+/** One way to read a refused survey: "Inlines at byte 189, crosslines at 193: 160 × 200 × 160, 12 traces missing". */
+export function describeCandidate({ dims, inline_byte: inline, crossline_byte: crossline, missing_traces: missing }) {
+  const holes = missing > 0 ? `, ${formatCount(missing)} ${missing === 1 ? 'trace' : 'traces'} missing` : '';
+  return `Inlines at byte ${inline}, crosslines at ${crossline}: ${dims.map(formatCount).join(' × ')}${holes}`;
 }
 
 /** The problem in the body of a failed answer, whatever that body is. */

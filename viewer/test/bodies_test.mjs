@@ -3,18 +3,20 @@ import { describe, it } from 'node:test';
 
 import { bodiesTable, describeBody, describeSmaller, toggled } from '../core/bodies.js';
 import {
-  bodyColour, colouringFor, colouringsOf, doubtfulShare, filledShare, linearOf, palenessOf, swatchColour, vertexColours,
+  bodyColour, colouringFor, colouringsOf, doubtfulShare, filledShare, linearOf, palenessOf, RAMP, swatchColour, vertexColours,
 } from '../core/colours.js';
 import {
   bodiesCame, bodiesFailed, describe as sentenceOf, describeBodies, idle, manifestCame, progressed, started,
 } from '../core/extraction_state.js';
 import { formatAmplitude, formatVolume } from '../core/format.js';
-import { bodyLast, boundsOfBody, enlarged, longestSide } from '../core/mesh.js';
-import { choicesFromAddress, choicesToAddress, hasMissing, noChoices, parseMinVoxels, previewOf, requestOf } from '../core/request.js';
+import { bodyLast, boundsOfBody, enlarged, heightsOf, longestSide } from '../core/mesh.js';
+import {
+  choicesFromAddress, choicesToAddress, hasMissing, noChoices, parseMinVoxels, parseVelocity, previewOf, requestOf, takesVelocity,
+} from '../core/request.js';
 import { colourDifference, luminanceOf, VISIONS } from './colour_vision.mjs';
 
 const entry = (body, more = {}) => ({
-  body, voxels: 1234, volume: null, genus: 0, cavities: 0, amplitude: { mean: 0.5678, min: 0.5, max: 0.75 }, interpolated_share: 0, ...more,
+  body, voxels: 1234, volume: null, volume_voxels: 1100, genus: 0, cavities: 0, components: 1, amplitude: { mean: 0.5678, min: 0.5, max: 0.75 }, interpolated_share: 0, ...more,
 });
 
 const GRID = '0123456789abcdef'.repeat(4);
@@ -52,7 +54,7 @@ describe('request', () => {
   });
 
   it('comes back from the page address', () => {
-    for (const choices of [noChoices, { fill: 'linear', minVoxels: 0, grid: 'structural' }, { fill: 'rbf', minVoxels: 7, grid: 'auto' },
+    for (const choices of [noChoices, { ...noChoices, fill: 'linear', grid: 'structural' }, { fill: 'rbf', minVoxels: 7, velocity: 2500.5, grid: 'auto' },
       { ...noChoices, grid: GRID }]) {
       const kept = Object.entries(choicesToAddress(choices)).filter(([, value]) => value !== null);
       assert.deepEqual(choicesFromAddress(new URLSearchParams(kept)), choices);
@@ -60,13 +62,33 @@ describe('request', () => {
   });
 
   it('takes the default for what an address says wrongly', () => {
-    assert.deepEqual(choicesFromAddress(new URLSearchParams('missing=magic&min_voxels=-3&grid=round')), noChoices);
+    assert.deepEqual(choicesFromAddress(new URLSearchParams('missing=magic&min_voxels=-3&grid=round&velocity=fast')), noChoices);
   });
 
   it('reads counts, and refuses what is none', () => {
     assert.equal(parseMinVoxels(' 1\u202f200 '), 1200);
     assert.equal(parseMinVoxels(''), 0);
     for (const text of ['-1', '2.5', 'few', '1e3']) assert.equal(parseMinVoxels(text), undefined, text);
+  });
+
+  it('turns times into depths by a velocity, in previews too', () => {
+    assert.equal(requestOf({ low: 0, high: 1 }, { ...noChoices, velocity: 2500 }).velocity, 2500);
+    assert.equal(previewOf({ low: 0, high: 1 }, { ...noChoices, velocity: 2500 }).velocity, 2500);
+    assert.ok(!('velocity' in requestOf({ low: 0, high: 1 })));
+  });
+
+  it('reads velocities, and refuses what is none', () => {
+    assert.deepEqual([parseVelocity(''), parseVelocity(undefined), parseVelocity(' 2500,5 ')], [null, null, 2500.5]);
+    for (const text of ['0', '-1', '20001', 'fast']) assert.equal(parseVelocity(text), undefined, text);
+  });
+
+  it('takes a velocity where there are times, and lengths beside them', () => {
+    const volume = (sample, unit) => ({ axes: { sample: { unit: sample } }, geometry: { unit } });
+    assert.ok(takesVelocity(volume('ms', 'm')));
+    assert.ok(takesVelocity(volume('ms', 'm'), { times: true }));
+    for (const other of [volume('m', 'm'), volume('ms', 'ft'), volume('ms', '')]) assert.ok(!takesVelocity(other));
+    assert.ok(!takesVelocity(volume('ms', 'm'), { times: false }));
+    assert.ok(!takesVelocity(null));
   });
 
   it('knows surveys with something to fill', () => {
@@ -139,7 +161,28 @@ describe('vertex colours', () => {
     const colours = vertexColours(tied, { ...look, colouring: 'agreement' });
     for (const [vertex, value] of tied.agreement.entries()) near(colourOf(colours, vertex), new Array(3).fill(1 - doubtfulShare(value)));
     assert.deepEqual([...palenessOf(tied, 'agreement')], [0, 255, 153]);
-    assert.deepEqual(colouringsOf([tied]), ['plain', 'bodies', 'reliability', 'agreement']);
+    assert.deepEqual(colouringsOf([tied]), ['plain', 'bodies', 'depth', 'reliability', 'agreement']);
+  });
+
+  it('go down the ramp from the top of the surface to its bottom', () => {
+    const tall = { positions: Float32Array.of(0, 30, 0, 0, 10, 0, 0, -10, 0) };
+    const { top, bottom } = heightsOf([tall, { positions: new Float32Array(0) }]);
+    assert.deepEqual([top, bottom, heightsOf([])], [30, -10, null]);
+    const colours = vertexColours(tall, { ...look, colouring: 'depth', top, bottom });
+    near(colourOf(colours, 0), linearOf(RAMP[0]));
+    near(colourOf(colours, 2), linearOf(RAMP.at(-1)));
+    const red = [0, 1, 2].map((vertex) => colourOf(colours, vertex)[0]);
+    assert.ok(red[0] > red[1] && red[1] > red[2], red.join());
+    const flat = vertexColours(tall, { ...look, colouring: 'depth', top: 10, bottom: 10 });
+    near(colourOf(flat, 0), linearOf(RAMP[0]));
+  });
+
+  it('of the depth fall in lightness all the way, and stand out from both skies', () => {
+    const lightness = RAMP.map(luminanceOf);
+    for (let at = 1; at < RAMP.length; ++at) assert.ok(lightness[at] < lightness[at - 1], RAMP[at]);
+    for (const sky of ['#e9ecec', '#101417'].map(luminanceOf)) {
+      for (const colour of lightness) assert.ok((Math.max(sky, colour) + 0.05) / (Math.min(sky, colour) + 0.05) > 1.2);
+    }
   });
 
   it('are plain in a part where everything was measured', () => {
@@ -151,8 +194,8 @@ describe('vertex colours', () => {
 
   it('are offered where the parts have what they need', () => {
     const bare = { ...part, body: null, reliability: null };
-    assert.deepEqual(colouringsOf([bare, part]), ['plain', 'bodies', 'reliability']);
-    assert.deepEqual(colouringsOf([{ ...part, reliability: null }]), ['plain', 'bodies']);
+    assert.deepEqual(colouringsOf([bare, part]), ['plain', 'bodies', 'depth', 'reliability']);
+    assert.deepEqual(colouringsOf([{ ...part, reliability: null }]), ['plain', 'bodies', 'depth']);
     assert.deepEqual(colouringsOf([]), ['plain']);
     assert.equal(colouringFor('reliability', ['plain', 'bodies']), 'plain');
   });
@@ -182,9 +225,18 @@ describe('table of bodies', () => {
   });
 
   it('says what is not known', () => {
-    const { rows } = bodiesTable([entry(0, { amplitude: null, voxels: 0, genus: null }), entry(1, { genus: 2, interpolated_share: 0.125 })], null);
-    assert.deepEqual(rows[0].cells, ['0', '–', '–', '0 %']);
-    assert.deepEqual(rows[1].cells, ['1\u202f234', '0.568', '2', '13 %']);
+    const { unit, rows } = bodiesTable([entry(0, { amplitude: null, genus: null }), entry(1, { volume_voxels: 0.25, genus: 2, interpolated_share: 0.125 })], null);
+    assert.equal(unit, 'voxels');
+    assert.deepEqual(rows[0].cells, ['1\u202f100', '–', '–', '0 %']);
+    assert.deepEqual(rows[1].cells, ['0.25', '0.568', '2', '13 %']);
+  });
+
+  it('has lengths where all bodies and the survey have them', () => {
+    const measured = [entry(0, { volume: 21585113 }), entry(1, { volume: 7 })];
+    const { unit, rows } = bodiesTable(measured, null, 'm');
+    assert.deepEqual([unit, ...rows.map(({ cells }) => cells[0])], ['m³', '21\u202f600\u202f000', '7']);
+    assert.equal(bodiesTable(measured, null, '').unit, 'voxels');
+    assert.equal(bodiesTable([...measured, entry(2)], null, 'm').unit, 'voxels');
   });
 
   it('lets the selected body go when it is clicked again', () => {
@@ -218,6 +270,13 @@ describe('bodies in the extraction state', () => {
     assert.match(describeBodies(done), /Counting/);
     assert.match(describeBodies(bodiesCame(done, [entry(0), entry(1)])), /^2 bodies/);
     assert.equal(describeBodies(bodiesCame(done, [entry(0)])), 'One body.');
+    assert.match(describeBodies(bodiesCame(done, [entry(0, { components: 3 }), entry(1)])), /^2 bodies, and cavities inside: 4 surfaces\./);
+  });
+
+  it('are what the sentence counts, surfaces until they are here', () => {
+    const many = manifestCame(started(), { levels: [{ level: 0, components: 1331, genus: 1234, manifold: true }], empty: false });
+    assert.equal(sentenceOf(many), 'Done: 1\u202f331 surfaces, 1\u202f234 tunnels.');
+    assert.equal(sentenceOf(bodiesCame(many, [entry(0)])), 'Done: 1 body, 1\u202f234 tunnels.');
   });
 
   it('may fail without the surface', () => {

@@ -3,15 +3,17 @@ import { describe, it } from 'node:test';
 
 import { GeosisApi } from '../core/api.js';
 import {
-  describe as sentenceOf, describeGrid, failed, idle, levelKnown, levelShown, manifestCame, progressed, started,
+  describe as sentenceOf, describeGrid, describePreview, failed, idle, levelCame, levelChosen, levelKnown, manifestCame, progressed, started,
 } from '../core/extraction_state.js';
 import { EventReader } from '../core/event_stream.js';
-import { formatBytes, formatCount, formatDistance, formatShare } from '../core/format.js';
+import { asSentence, formatBytes, formatCount, formatDistance, formatShare, formatWhole } from '../core/format.js';
 import { Histogram } from '../core/histogram.js';
 import { debounced, Latest } from '../core/latest.js';
 import { LevelAssembly } from '../core/level_assembly.js';
-import { problemFromText } from '../core/problem.js';
+import { describeDropped, levelCells } from '../core/levels.js';
+import { describeCandidate, problemFromText } from '../core/problem.js';
 import { parseEnd, rangeFromText, rangeMistake, rangeToText, roundTo } from '../core/range.js';
+import { describeSurvey, fileNameOf, surveyChoices, warningsOf } from '../core/survey.js';
 
 describe('LevelAssembly', () => {
   it('shows each finer level when its last part is here', () => {
@@ -175,7 +177,21 @@ describe('extraction state', () => {
     const done = manifestCame(started(), { levels: [entry(0), entry(1)], empty: false });
     assert.equal(progressed(done, { stage: 'encode', progress: 0.5 }), done);
     assert.equal(levelKnown(done, entry(5)), done);
-    assert.equal(sentenceOf(levelShown(done, 0)), 'Done: 1 piece, 2 tunnels.');
+    assert.equal(sentenceOf(levelCame(done, 0)), 'Done: 1 surface, 2 tunnels.');
+  });
+
+  it('shows the finest level, or the one that somebody chose', () => {
+    const two = levelCame(levelCame(started(), 4), 3);
+    assert.equal(two.shown, 3);
+    assert.equal(levelChosen(two, 1), two);
+    const coarse = levelChosen(two, 4);
+    assert.deepEqual([coarse.shown, levelCame(coarse, 2).shown], [4, 4]);
+    assert.equal(levelCame(levelChosen(levelCame(coarse, 2), 2), 1).shown, 1);
+  });
+
+  it('says that a preview is one', () => {
+    assert.equal(describePreview(false), 'Preview: rough, topology not promised.');
+    assert.match(describePreview(true), /^Preview: nothing/);
   });
 
   it('tells an empty range, a failure and the beginning', () => {
@@ -194,8 +210,26 @@ describe('problemFromText', () => {
     const problem = problemFromText(422, JSON.stringify({
       detail: 'no grid', code: 'malformed_input', candidates: [{ dims: [2, 3, 4], inline_byte: 9, crossline_byte: 21 }],
     }));
-    assert.equal(problem.message, 'no grid It could be read as 2 × 3 × 4 (inline at byte 9, crossline at byte 21).');
+    assert.equal(problem.message, 'No grid.');
     assert.equal(problem.status, 422);
+  });
+
+  it('asks which way of several is right, and offers each once', () => {
+    const candidates = [
+      { dims: [2, 3, 1000], inline_byte: 9, crossline_byte: 21, missing_traces: 0 },
+      { dims: [2, 4, 1000], inline_byte: 189, crossline_byte: 193, missing_traces: 2 },
+    ];
+    const problem = problemFromText(422, JSON.stringify({ detail: 'several: 9/21, 189/193; name one by inline_byte', candidates }));
+    assert.match(problem.message, /\. Which trace header bytes .*\?$/);
+    assert.doesNotMatch(problem.message, /189/);
+    assert.deepEqual(problem.candidates.map(describeCandidate), [
+      'Inlines at byte 9, crosslines at 21: 2 × 3 × 1\u202f000', 'Inlines at byte 189, crosslines at 193: 2 × 4 × 1\u202f000, 2 traces missing',
+    ]);
+  });
+
+  it('ends what the server says before it goes on', () => {
+    assert.equal(problemFromText(404, JSON.stringify({ detail: 'there is no volume 12', code: 'not_found' })).message,
+      'There is no volume 12. It may have been deleted meanwhile.');
   });
 
   it('survives what is not a problem document', () => {
@@ -235,7 +269,66 @@ describe('GeosisApi.stream', () => {
   });
 });
 
+describe('GeosisApi.uploadUrl', () => {
+  it('has the name, and the options that somebody chose', () => {
+    const { searchParams } = new URL(new GeosisApi('http://host').uploadUrl('a & b.sgy', { inline_byte: 9, crossline_byte: 21 }));
+    assert.deepEqual([...searchParams], [['format', 'auto'], ['name', 'a & b.sgy'], ['inline_byte', '9'], ['crossline_byte', '21']]);
+  });
+});
+
+describe('the table of levels', () => {
+  const level = {
+    triangles: 7812, components: 222, euler: -330, genus: 1057, bytes: 18271, distance: { mean_voxels: 0.113, max_voxels: 25.814 }, dropped_components: 109,
+  };
+
+  it('has no distance before it is measured', () => {
+    assert.deepEqual(levelCells(level, true), ['7\u202f812', '222', '−330', '1\u202f057', '18.3 kB', '0.11 / 25.81']);
+    assert.equal(levelCells({ ...level, distance: null, genus: null }, false).at(-1), '…');
+  });
+
+  it('says what is left out, and that the distance has it', () => {
+    assert.equal(describeDropped(level), '109 specks left out; the distance includes them');
+    assert.equal(describeDropped({ dropped_components: 1 }), '1 speck left out; the distance includes it');
+    assert.equal(describeDropped({ dropped_components: 0 }), '');
+  });
+});
+
+describe('surveys', () => {
+  it('are listed by name, and told apart where they share one', () => {
+    const id = (letter) => letter.repeat(64);
+    const choices = surveyChoices([
+      { id: id('a'), name: 'Line 10' }, { id: id('b'), name: 'line 9' }, { id: id('c'), name: 'line 9' }, { id: id('d'), name: null },
+    ]);
+    assert.deepEqual(choices.map(({ text }) => text), ['dddddddddddd', 'line 9 (bbbbbb)', 'line 9 (cccccc)', 'Line 10']);
+    assert.equal(choices[1].id, id('b'));
+  });
+
+  it('are told in a line', () => {
+    assert.equal(describeSurvey({ dims: [23, 18, 1075], missing: { traces: 1 } }), '23 inlines × 18 crosslines × 1\u202f075 samples, 1 trace missing');
+    assert.equal(describeSurvey({ dims: [2, 3, 4], missing: { traces: 0 } }), '2 inlines × 3 crosslines × 4 samples');
+    assert.equal(fileNameOf({ id: 'f', name: 'north sea.2.sgy' }), 'north sea.2');
+  });
+
+  it('have their warnings in plain words', () => {
+    const [plain, other] = warningsOf({ warnings: [
+      { code: 'no_coordinates', detail: 'bytes 181 and 185 are zero; x and y are the inline and crossline numbers' },
+      { code: 'dead_traces', detail: '12 traces are marked dead (2 at byte 29): taken as missing' },
+    ] });
+    assert.match(plain.text, /no coordinates/);
+    assert.match(plain.detail, /^Bytes 181 .*numbers\.$/);
+    assert.equal(other.text, '12 traces are marked dead (2 at byte 29): taken as missing.');
+    assert.deepEqual(warningsOf({}), []);
+  });
+});
+
 describe('format', () => {
+  it('makes sentences of what a server says', () => {
+    assert.equal(asSentence('the queue is full '), 'The queue is full.');
+    assert.equal(asSentence('inline_byte: 300, at most 240'), 'inline_byte: 300, at most 240.');
+    assert.equal(asSentence('SEG-Y: cut short!'), 'SEG-Y: cut short!');
+    assert.equal(formatWhole(-1234), '−1\u202f234');
+  });
+
   it('writes numbers for people', () => {
     assert.equal(formatCount(31970), '31\u202f970');
     assert.equal(formatBytes(999), '999 B');

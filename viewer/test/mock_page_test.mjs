@@ -46,7 +46,7 @@ describe('the page on the mock', { skip: GEOSIS && hasBrowser ? false : 'needs G
 
   it('fills missing traces when asked to, and remembers it', async () => {
     assert.equal(await page.inputValue('#fill'), 'none');
-    assert.equal(await page.locator('#colouring label:visible').count(), 2, 'reliability is not offered where all is measured');
+    assert.equal(await page.locator('#colouring label:visible').count(), 3, 'reliability is not offered where all is measured');
     const { missing, attributes } = await reconstructBy(page, () => page.selectOption('#fill', 'rbf'));
     assert.deepEqual(missing, { method: 'rbf' });
     assert.deepEqual(attributes, ['reliability', 'body']);
@@ -61,6 +61,7 @@ describe('the page on the mock', { skip: GEOSIS && hasBrowser ? false : 'needs G
       await page.reload();
       await page.waitForSelector('#sign-in', { state: 'visible' });
       assert.ok(await page.isHidden('#survey-problem'));
+      assert.ok(await page.isHidden('#survey'), 'it seems to be loading');
       await page.fill('#key', 'wrong');
       await page.click('#sign-in button');
       await page.getByText('the key is not known here').waitFor();
@@ -68,10 +69,28 @@ describe('the page on the mock', { skip: GEOSIS && hasBrowser ? false : 'needs G
       await page.click('#sign-in button');
       await waitUntilDone(page);
       assert.ok(await page.isHidden('#sign-in'));
+      assert.ok(await page.isVisible('#survey'));
       await page.reload();
       await waitUntilDone(page);
     } finally {
       service.mock.key = '';
+    }
+  });
+
+  it('invites to bring the first survey, and shows nothing that needs one', async () => {
+    const empty = await startMock({ geosis: GEOSIS });
+    try {
+      await page.goto(empty.url);
+      await page.getByText('Drop a SEG-Y file here, or choose one').waitFor();
+      for (const id of ['#histogram', '#levels', '#bodies', '#tools']) assert.ok(await page.isHidden(id), id);
+      const bytes = await synthesize(GEOSIS, '--dims', '24,28,32');
+      await page.setInputFiles('#file', { name: 'first.sgy', mimeType: 'application/octet-stream', buffer: bytes });
+      await waitUntilDone(page);
+      assert.ok(await page.isHidden('#nothing-yet'));
+      assert.ok(await page.isVisible('#histogram'));
+    } finally {
+      await page.goto('about:blank');
+      await empty.close();
     }
   });
 
@@ -101,8 +120,9 @@ describe('the page on the mock', { skip: GEOSIS && hasBrowser ? false : 'needs G
   it('lists the largest bodies and counts the others', async () => {
     assert.equal(await rows().count(), 50);
     assert.match(await page.textContent('#bodies-smaller'), /^and \d+ smaller ones$/);
-    const samples = (await rows().locator('td:nth-child(2)').allTextContents()).map((text) => Number(text.replace(/\D/g, '')));
-    assert.deepEqual(samples, [...samples].sort((a, b) => b - a));
+    const volumes = (await rows().locator('td:nth-child(2)').allTextContents()).map((text) => Number(text.replace(/[^\d.]/g, '')));
+    assert.deepEqual(volumes, [...volumes].sort((a, b) => b - a));
+    assert.ok(volumes.at(-1) > 0);
   });
 
   it('singles out the body of a row, by pointer and by keyboard', async () => {

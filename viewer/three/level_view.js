@@ -8,7 +8,7 @@ import { ghostMaterial, LevelMaterial } from './level_material.js';
 export class LevelView extends Group {
   #solid = new LevelMaterial();
   #ghost = ghostMaterial();
-  #look = { colouring: 'plain', plain: '', pale: '' };
+  #look = { colouring: 'plain', plain: '', pale: '', top: 0, bottom: 0 };
   #selected = null;
 
   get parts() {
@@ -19,7 +19,7 @@ export class LevelView extends Group {
     for (const material of [this.#solid, this.#ghost]) material.wireframe = on;
   }
 
-  /** {colouring, plain, pale}, as core/colours.js has them; what is not named stays. */
+  /** {colouring, plain, pale, top, bottom}, as core/colours.js has them; what is not named stays. */
   set look(changed) {
     if (Object.entries(changed).every(([name, value]) => this.#look[name] === value)) return;
     this.#look = { ...this.#look, ...changed };

@@ -1,18 +1,19 @@
 import {
-  Box3, Color, DirectionalLight, Group, HemisphereLight, PerspectiveCamera, Raycaster, Scene, Sphere,
-  Spherical, Vector2, Vector3, WebGLRenderer,
+  Box3, Color, DirectionalLight, Group, HemisphereLight, PerspectiveCamera, Raycaster, Scene, Spherical, Vector2, Vector3,
+  WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 
 import { distanceToSee } from '../core/placement.js';
 
 const FIELD_OF_VIEW = 38;
-/** From where the survey is seen first, and the share of the view that it fills; names and numbers lie around it. */
+/** From where the survey is seen first, and the pixels around what is framed that stay free for names and numbers. */
 const FIRST_VIEW = Object.freeze(new Vector3(-0.52, 0.62, 0.78));
-const FILLED = 0.84;
+const FREE = Object.freeze({ across: 52, down: 24 });
 const CLICK_PIXELS = 5;
-/** Distance of a close-up in radii of what is looked at. */
-const CLOSE_UP = 6;
+/** The depths that are drawn, as shares of the distance to what is looked at and to the survey's far end. */
+const NEAREST = 1 / 200;
+const FARTHEST = 2;
 
 /** Canvas, camera and light. Draws when something changed, never otherwise. */
 export class Stage {
@@ -23,16 +24,25 @@ export class Stage {
   #renderer;
   #controls;
   #points = [[-0.5, -0.5, -0.5], [0.5, 0.5, 0.5]];
+  /** Shows again what was framed last; null once somebody has turned the view. */
+  #reframe = null;
+  #isFraming = false;
   #scheduled = false;
   #afterDraw = [];
+  #overlays;
 
-  constructor(canvas) {
+  /** overlays   elements over the canvas that hide nothing of what is framed. */
+  constructor(canvas, overlays) {
+    this.#overlays = overlays;
     this.#renderer = new WebGLRenderer({ canvas, antialias: true });
     this.#renderer.setPixelRatio(Math.min(2, globalThis.devicePixelRatio));
     this.#scene.add(this.world, this.#camera);
     this.#addLights();
     this.#controls = new OrbitControls(this.#camera, canvas);
-    this.#controls.addEventListener('change', () => this.draw());
+    this.#controls.addEventListener('change', () => {
+      if (!this.#isFraming) this.#reframe = null;
+      this.draw();
+    });
     canvas.addEventListener('keydown', (event) => this.#onKey(event));
     new ResizeObserver(() => this.#resize()).observe(canvas.parentElement);
   }
@@ -72,37 +82,68 @@ export class Stage {
     return raycaster;
   }
 
-  /** Looks from south-west, from above, at points around the origin of which all are to be seen; in the world's own scale. */
+  /** Looks from south-west, from above, at points of which all are to be seen; in the world's own scale. */
   frame(points) {
     this.#points = points;
     this.resetView();
   }
 
   resetView() {
+    this.#reframe = () => this.#show(this.#points, FIRST_VIEW);
+    this.#reframe();
+  }
+
+  /** Goes near points of the world, so that all are to be seen, from the side from which it is seen now. */
+  lookAt(points) {
+    const direction = new Vector3().subVectors(this.#camera.position, this.#controls.target);
+    this.#reframe = () => this.#show(points, direction);
+    this.#reframe();
+  }
+
+  /** Fills the view with points in the world's own scale, seen from a direction. */
+  #show(points, direction) {
     this.world.updateMatrixWorld();
-    const half = Math.tan((FIELD_OF_VIEW * Math.PI) / 360);
-    this.#controls.target.set(0, 0, 0);
-    this.#camera.position.copy(FIRST_VIEW);
-    this.#camera.lookAt(this.#controls.target);
+    const places = points.map((point) => this.world.localToWorld(new Vector3(...point)));
+    const middle = new Box3().setFromPoints(places).getCenter(new Vector3());
+    this.#camera.position.copy(middle).add(direction);
+    this.#camera.lookAt(middle);
     const toCamera = this.#camera.quaternion.clone().invert();
-    const seen = this.#points.map((point) => this.world.localToWorld(new Vector3(...point)).applyQuaternion(toCamera).toArray());
-    const distance = distanceToSee(seen, FILLED * half * this.#camera.aspect, FILLED * half);
-    this.#camera.near = distance / 200;
-    this.#camera.far = distance * 20;
-    this.#camera.position.copy(FIRST_VIEW).setLength(distance);
-    this.#camera.updateProjectionMatrix();
+    const seen = places.map((place) => place.sub(middle).applyQuaternion(toCamera).toArray());
+    const distance = distanceToSee(seen, ...this.#makeRoom()) || 1;
+    this.#camera.position.copy(middle).add(direction.clone().setLength(distance));
+    this.#isFraming = true;
+    this.#controls.target.copy(middle);
     this.#controls.update();
+    this.#isFraming = false;
     this.draw();
   }
 
-  /** Goes near an object of the world, from the side from which it is seen now. */
-  lookAt(object) {
-    const { center, radius } = new Box3().setFromObject(object).getBoundingSphere(new Sphere());
-    const direction = new Vector3().subVectors(this.#camera.position, this.#controls.target).normalize();
-    this.#controls.target.copy(center);
-    this.#camera.position.copy(center).addScaledVector(direction, Math.max(CLOSE_UP * radius, 3 * this.#camera.near));
-    this.#controls.update();
-    this.draw();
+  /** Moves the middle to between what lies over the canvas; returns half of the width and of the height seen there at distance 1. */
+  #makeRoom() {
+    const { width, height, above, below } = this.#freeSpace();
+    const shown = (pixels, hidden) => Math.max(0.4 * pixels, pixels - hidden);
+    const pixel = Math.tan((FIELD_OF_VIEW * Math.PI) / 360) / height;
+    this.#camera.setViewOffset(width, height, 0, Math.round((below - above) / 2), width, height);
+    return [pixel * shown(width, 2 * FREE.across), pixel * shown(height, above + below)];
+  }
+
+  /** The canvas and how much of it is hidden at its upper and its lower end, in pixels. */
+  #freeSpace() {
+    const { top, bottom, width, height } = this.#renderer.domElement.getBoundingClientRect();
+    const boxes = this.#overlays.map((overlay) => overlay.getBoundingClientRect()).filter((box) => box.height > 0);
+    const isAbove = (box) => box.top + box.bottom < top + bottom;
+    const above = Math.max(0, ...boxes.filter(isAbove).map((box) => box.bottom - top));
+    const below = Math.max(0, ...boxes.filter((box) => !isAbove(box)).map((box) => bottom - box.top));
+    return { width: Math.max(1, width), height: Math.max(1, height), above: above + FREE.down, below: below + FREE.down };
+  }
+
+  /** Draws from a little before what is looked at to behind the survey's far end: near enough to each other to tell depths apart. */
+  #fitDepths() {
+    const distance = this.#camera.position.distanceTo(this.#controls.target);
+    const reach = Math.max(...this.#points.map((point) => this.world.localToWorld(new Vector3(...point)).distanceTo(this.#camera.position)));
+    this.#camera.near = NEAREST * distance;
+    this.#camera.far = FARTHEST * Math.max(reach, distance);
+    this.#camera.updateProjectionMatrix();
   }
 
   draw() {
@@ -110,6 +151,7 @@ export class Stage {
     this.#scheduled = true;
     requestAnimationFrame(() => {
       this.#scheduled = false;
+      this.#fitDepths();
       this.#renderer.render(this.#scene, this.#camera);
       const { clientWidth, clientHeight } = this.#renderer.domElement;
       for (const action of this.#afterDraw) action(this.#camera, clientWidth, clientHeight);
@@ -130,7 +172,8 @@ export class Stage {
     this.#renderer.setSize(clientWidth, clientHeight, false);
     this.#camera.aspect = clientWidth / clientHeight;
     this.#camera.updateProjectionMatrix();
-    this.draw();
+    if (this.#reframe) this.#reframe();
+    else this.draw();
   }
 
   /** Arrows turn, + and - zoom, Home goes back. */

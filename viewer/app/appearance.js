@@ -45,7 +45,9 @@ export class Appearance {
     stage.onClick((raycaster) => this.#state.shown !== null && !this.#isPreview && this.#select(this.#level.bodyAt(raycaster)));
     this.#section = new BodiesSection(elements.bodies, { onChoose: (body) => this.#select(body) });
     elements.selection.querySelector('#release').addEventListener('click', () => this.#select(null));
-    elements.selection.querySelector('#zoom-to').addEventListener('click', () => this.#bounds && stage.lookAt(cornersBetween(this.#bounds)));
+    elements.selection.querySelector('#zoom-to').addEventListener('click', () => {
+      if (this.#bounds) stage.lookAt(cornersBetween(this.#bounds));
+    });
     addEventListener('keydown', ({ key }) => key === 'Escape' && this.#select(null));
     elements.colouring.addEventListener('change', ({ target }) => {
       this.colouring = target.value;

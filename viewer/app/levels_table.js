@@ -26,7 +26,10 @@ export class LevelsTable {
     const content = JSON.stringify([levels, here, shown, isMeasured]);
     if (content === this.#shown) return;
     this.#shown = content;
-    const rows = levels.map((level) => rowOf(level, { isShown: level.level === shown, isHere: here.includes(level.level), isMeasured }));
+    const rows = levels.map((entry) => {
+      const { level } = entry;
+      return rowOf(entry, { isShown: level === shown, isHere: here.includes(level), isMeasured });
+    });
     const withNotes = rows.flatMap((row, at) => [row, ...noteOf(levels[at])]);
     this.#rows.fill(withNotes, ({ dataset }) => dataset.level, rows.find(({ ariaCurrent }) => ariaCurrent === 'true'));
   }

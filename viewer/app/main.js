@@ -26,13 +26,11 @@ let state = idle;
 /** What was asked for last, as text. */
 let asked = '';
 
-const appearanceElements = {
-  colouring: element('colouring'), legend: element('legend'), ramp: element('ramp'), selection: element('selection'), bodies: element('bodies'),
-};
-const appearance = new Appearance(stage, appearanceElements, {
+const elementsOf = (...ids) => Object.fromEntries(ids.map((id) => [id, element(id)]));
+const appearance = new Appearance(stage, elementsOf('colouring', 'legend', 'ramp', 'selection', 'bodies'), {
   onColouring: (name) => remember({ colour: name === 'plain' ? null : name }),
 });
-const surveyView = new SurveyView(stage, { labels: element('labels'), tools: element('tools'), overlays }, {
+const surveyView = new SurveyView(stage, { ...elementsOf('labels', 'tools'), overlays }, {
   onWireframe: (isOn) => {
     appearance.wireframe = isOn;
   },
@@ -57,9 +55,11 @@ const levelsTable = new LevelsTable(element('levels'), { onChoose: (level) => re
 const form = new RequestForm(document.querySelector('aside'), element('histogram'), { onMove: showPreview, onWanted: reconstruct });
 const surveys = new Surveys(api, { onLeave: leaveSurvey, onOpen: openSurvey });
 
-listenToSave(element('save'), async (format) => ({
-  blob: await api.level(state.manifest.id, state.shown, format), name: `${fileNameOf(volume)}${state.shown > 0 ? `_level${state.shown}` : ''}.${format}`,
-}));
+listenToSave(element('save'), async (format) => {
+  const { manifest, shown } = state;
+  const name = fileNameOf(volume) + (shown > 0 ? `_level${shown}` : '');
+  return { blob: await api.level(manifest.id, shown, format), name: `${name}.${format}` };
+});
 
 function leaveSurvey() {
   preview.stop();

@@ -124,7 +124,8 @@ export class RequestForm {
 
   #note() {
     const mistake = this.#mistake;
-    this.#field('range-note').textContent = mistake || (this.#histogram ? `${formatShare(this.#histogram.share(this.#range))} of the samples` : '');
+    const share = mistake || !this.#histogram ? '' : `${formatShare(this.#histogram.share(this.#range))} of the samples`;
+    this.#field('range-note').textContent = mistake || share;
     this.#field('reconstruct').disabled = !this.#isSound;
   }
 

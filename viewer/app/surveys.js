@@ -49,13 +49,14 @@ export class Surveys {
 
   async #list(chosen) {
     const list = element('survey');
-    let choices = [];
+    let choices = null;
     try {
       choices = surveyChoices(await this.#api.volumes());
     } finally {
-      const title = choices.length > 0 ? 'Choose a survey' : 'No survey yet';
-      list.replaceChildren(new Option(title, '', false, true), ...choices.map(({ id, text }) => new Option(text, id, false, id === chosen)));
-      list.disabled = choices.length === 0;
+      const title = choices ? (choices.length > 0 ? 'Choose a survey' : 'No survey yet') : 'Not to be had';
+      const options = (choices ?? []).map(({ id, text }) => new Option(text, id, false, id === chosen));
+      list.replaceChildren(new Option(title, '', false, true), ...options);
+      list.disabled = options.length === 0;
     }
     element('nothing-yet').hidden = choices.length > 0;
     this.#needKey(false);
@@ -163,7 +164,9 @@ export class Surveys {
   }
 
   #listen() {
-    element('survey').addEventListener('change', ({ target }) => target.value && this.#tellingProblems(() => this.#change(target.value)));
+    element('survey').addEventListener('change', ({ target }) => {
+      if (target.value) this.#tellingProblems(() => this.#change(target.value));
+    });
     element('file').addEventListener('change', ({ target }) => {
       if (target.files.length > 0) this.#upload(target.files[0]);
       target.value = '';

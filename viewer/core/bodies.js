@@ -29,7 +29,8 @@ const isThere = (value) => value !== null && value !== undefined;
 function rowOf(entry, selected, hasLengths) {
   const { body, volume, volume_voxels: voxels, amplitude, genus, interpolated_share: filled } = entry;
   const cells = [
-    formatVolume(hasLengths ? volume : voxels), formatAmplitude(amplitude?.mean), isThere(genus) ? formatCount(genus) : '–', formatShare(filled ?? 0),
+    formatVolume(hasLengths ? volume : voxels), formatAmplitude(amplitude?.mean), isThere(genus) ? formatCount(genus) : '–',
+    formatShare(filled ?? 0),
   ];
   return { body, isSelected: body === selected, cells };
 }

@@ -1,4 +1,4 @@
-import { counted, formatCount, formatShare } from './format.js';
+import { asSentence, counted, formatCount, formatShare } from './format.js';
 
 /**
  * What is known of the extraction on the screen. A value: every change makes a new one.
@@ -117,7 +117,7 @@ export function describeGrid({ manifest }) {
   const what = grid.chosen === 'structural' ? 'Joined along the reflectors' : 'Joined along the axes';
   const why = grid.asked === 'auto' ? `: ${grid.because}` : '';
   const doubt = grid.chosen === 'structural' && grid.unreliable_share > 0
-    ? ` ${formatShare(grid.unreliable_share)} of the samples lie where traces hardly agree.` : '';
+    ? ` ${asSentence(`${formatShare(grid.unreliable_share)} of the samples lie where traces hardly agree`)}` : '';
   return `${what}${why}.${doubt}`;
 }
 

@@ -44,7 +44,9 @@ export function placeTexts({ corners, eye, screen, sizes, view, taken = [] }) {
     }
   };
   const edges = [0, 1, 2].map((axis) => sideOf(labelledEdge(axis, corners, eye, screen), screen, view));
-  for (const axis of [0, 1, 2]) if (edges[axis]) settle(axis, 1, NAME_PLACES.map((share) => beside(edges[axis], share, sizes[axis][1])));
+  for (const axis of [0, 1, 2]) {
+    if (edges[axis]) settle(axis, 1, NAME_PLACES.map((share) => beside(edges[axis], share, sizes[axis][1])));
+  }
   for (const axis of [0, 1, 2]) {
     for (const end of [0, 1]) {
       if (edges[axis]?.[end ? 'to' : 'from'].isSeen) settle(axis, 2 * end, [atEnd(edges[axis], end, sizes[axis][2 * end])]);
@@ -53,12 +55,13 @@ export function placeTexts({ corners, eye, screen, sizes, view, taken = [] }) {
   return places;
 }
 
-/** The corners of the edge that an axis is told along: the lowest of those at the rim, for the vertical axis the leftmost; or null. */
+/** The corners of the edge that an axis is told along: the lowest at the rim, for the vertical axis the leftmost; or null. */
 export function labelledEdge(axis, corners, eye, screen) {
-  const edges = [0, 1, 2, 3, 4, 5, 6, 7].filter((corner) => !((corner >> axis) & 1)).map((corner) => [corner, corner | (1 << axis)]);
+  const starts = corners.map((_, corner) => corner).filter((corner) => !((corner >> axis) & 1));
+  const edges = starts.map((corner) => [corner, corner | (1 << axis)]);
   const isSeen = facesTowards(corners, eye);
-  const others = [0, 1, 2].filter((other) => other !== axis);
-  const isAtRim = ([corner]) => !isSeen || isSeen[others[0]][(corner >> others[0]) & 1] !== isSeen[others[1]][(corner >> others[1]) & 1];
+  const [left, right] = [0, 1, 2].filter((other) => other !== axis);
+  const isAtRim = ([corner]) => !isSeen || isSeen[left][(corner >> left) & 1] !== isSeen[right][(corner >> right) & 1];
   const rim = edges.filter((edge) => edge.every((corner) => screen[corner]) && isAtRim(edge));
   const rank = ([from, to]) => (axis === 2 ? -(screen[from][0] + screen[to][0]) : screen[from][1] + screen[to][1]);
   return rim.reduce((best, edge) => (best && rank(best) >= rank(edge) ? best : edge), null);
@@ -76,7 +79,7 @@ function facesTowards(corners, eye) {
   }));
 }
 
-/** What is seen of an edge: its ends on the screen, its direction and the side of it that lies outside of the box; null when nothing is. */
+/** What is seen of an edge: its ends on the screen, its direction and the side of it that is outside of the box; null for nothing. */
 function sideOf(edge, screen, view) {
   if (!edge) return null;
   const [from, to] = edge.map((corner) => screen[corner]);
@@ -90,8 +93,8 @@ function sideOf(edge, screen, view) {
   const isOutward = side[0] * (from[0] - middle[0]) + side[1] * (from[1] - middle[1]) > 0;
   const at = (share) => [from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1])];
   return {
-    from: { at: from, isSeen: clip[0] === 0 }, to: { at: to, isSeen: clip[1] === 1 }, along, outward: isOutward ? side : side.map((c) => -c),
-    seen: clip.map(at), length,
+    from: { at: from, isSeen: clip[0] === 0 }, to: { at: to, isSeen: clip[1] === 1 }, seen: clip.map(at), length, along,
+    outward: isOutward ? side : side.map((c) => -c),
   };
 }
 

@@ -2,7 +2,8 @@ import { counted, formatBytes, formatCount, formatDistance, formatWhole } from '
 
 /** Triangles, surfaces, Euler characteristic, tunnels, size and distance of a level; no distance is known before the manifest. */
 export function levelCells({ triangles, components, euler, genus, bytes, distance }, isMeasured) {
-  const measured = isMeasured ? `${formatDistance(distance.mean_voxels)} / ${formatDistance(distance.max_voxels)}` : formatDistance(null);
+  const distances = isMeasured ? [distance.mean_voxels, distance.max_voxels] : [null];
+  const measured = distances.map(formatDistance).join(' / ');
   const tunnels = genus === null || genus === undefined ? '–' : formatCount(genus);
   return [formatCount(triangles), formatCount(components), formatWhole(euler), tunnels, formatBytes(bytes), measured];
 }

@@ -34,7 +34,9 @@ const LEVELS = Object.freeze([
 
 /** The request's JSON. */
 export function requestOf({ low, high }, { fill, minVoxels, velocity, grid } = noChoices) {
-  const request = { range: [low, high], missing: { method: fill }, attributes: ATTRIBUTES, levels: LEVELS, ...bodiesOf(minVoxels, velocity) };
+  const request = {
+    range: [low, high], missing: { method: fill }, attributes: ATTRIBUTES, levels: LEVELS, ...bodiesOf(minVoxels, velocity),
+  };
   if (grid === 'given') return request;
   return { ...request, grid, attributes: isPlaced(grid) ? ATTRIBUTES : [...ATTRIBUTES, 'agreement'] };
 }
@@ -59,7 +61,7 @@ export function hasMissing(volume) {
   return (volume?.missing?.samples ?? 0) > 0;
 }
 
-/** Whether a velocity gives a volume lengths: it is in time, and its horizontal lengths are metres. A placed grid has depths already, or times. */
+/** Whether a velocity gives a volume lengths: it is in time, metres lie beside, and no placed grid has depths already. */
 export function takesVelocity(volume, placed) {
   return volume?.axes.sample.unit === 'ms' && volume.geometry.unit === 'm' && (placed?.times ?? true);
 }

@@ -88,6 +88,7 @@ describe('the grid', () => {
     assert.equal(describeGrid({ manifest: {} }), '');
     assert.equal(on({ asked: 'structural', chosen: 'structural', because: 'it was asked for', unreliable_share: 0.034 }),
       'Joined along the reflectors. 3.4 % of the samples lie where traces hardly agree.');
+    assert.match(on({ asked: 'structural', chosen: 'structural', unreliable_share: 1e-6 }), /reflectors\. Under 0\.01 %/);
     assert.equal(on({ asked: 'ab', chosen: 'curvilinear', folded_share: 0.002 }),
       "Where the grid's nodes are placed. 0.2 % of its cells are folded: the surface may cross itself there.");
     assert.equal(on({ asked: 'auto', chosen: 'given', because: 'dips are small' }), 'Joined along the axes: dips are small.');

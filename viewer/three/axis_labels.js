@@ -37,9 +37,10 @@ export class AxisLabels {
       const { x, y } = corner.clone().project(camera);
       return isBehind ? null : [((x + 1) / 2) * width, ((1 - y) / 2) * height];
     });
-    const eye = camera.position.toArray();
-    const places = this.#texts.length === 0 ? [] : placeTexts({
-      corners: corners.map((corner) => corner.toArray()), eye, screen, sizes: this.#sizes, view: [width, height], taken: this.#taken(),
+    if (this.#texts.length === 0) return;
+    const places = placeTexts({
+      corners: corners.map((corner) => corner.toArray()), eye: camera.position.toArray(), screen, sizes: this.#sizes,
+      view: [width, height], taken: this.#taken(),
     });
     for (const [axis, texts] of this.#texts.entries()) {
       for (const [at, element] of texts.entries()) show(element, places[axis][at]);

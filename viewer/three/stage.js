@@ -140,7 +140,8 @@ export class Stage {
   /** Draws from a little before what is looked at to behind the survey's far end: near enough to each other to tell depths apart. */
   #fitDepths() {
     const distance = this.#camera.position.distanceTo(this.#controls.target);
-    const reach = Math.max(...this.#points.map((point) => this.world.localToWorld(new Vector3(...point)).distanceTo(this.#camera.position)));
+    const distances = this.#points.map((point) => this.world.localToWorld(new Vector3(...point)).distanceTo(this.#camera.position));
+    const reach = Math.max(...distances);
     this.#camera.near = NEAREST * distance;
     this.#camera.far = FARTHEST * Math.max(reach, distance);
     this.#camera.updateProjectionMatrix();

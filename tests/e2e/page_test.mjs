@@ -128,12 +128,14 @@ describe('the page', () => {
     });
     assert.ok(changed > 1e-3, `the preview does not show: ${changed}`);
     assert.equal(await page.textContent('#status'), 'Preview: rough, topology not promised.');
+    assert.ok(await page.isVisible('#preview-note'));
     assert.ok(await page.isHidden('#save'), 'what was there before can be saved');
     const paleness = () => page.locator('#levels').evaluate((table) => Number(getComputedStyle(table).opacity));
     assert.ok((await paleness()) < 0.6, 'the old table looks as if it were of the preview');
     await reconstructBy(page, () => page.mouse.up());
     assert.equal(await levelRows().count(), LEVELS);
     assert.equal(await paleness(), 1);
+    assert.ok(await page.isHidden('#preview-note'));
     assert.match(await page.textContent('#status'), /^Done/);
     assert.deepEqual(page.mistakes, []);
   });

@@ -114,6 +114,7 @@ function showState(isPreviewEmpty = false) {
   element('progress').value = state.progress;
   levelsTable.show(state, isPreview);
   element('bodies').classList.toggle('old', isPreview);
+  element('preview-note').hidden = !isPreview;
   const note = isPreview ? '' : describeGrid(state);
   element('grid-note').textContent = note;
   element('grid-note').hidden = note === '';

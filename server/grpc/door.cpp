@@ -152,7 +152,9 @@ class Door::Running {
     hand_over_ = std::make_unique<HandOver>(std::move(lanes), kLanePatience);
     acceptor_ = std::make_unique<Acceptor>(
         *std::move(listener), Acceptor::Limits{options.connections, options.connections_per_peer},
-        [this](Descriptor socket, const std::string& name) { hand_over_->hand(std::move(socket), name); },
+        Acceptor::Hand{
+            [this] { return hand_over_->has_room(); },
+            [this](Descriptor socket, const std::string& name) { hand_over_->hand(std::move(socket), name); }},
         [this, guard = flood_guard(options, uploads_.most())](const auto& open) mutable {
           auto verdict = guard.look(open, calls());
           if (auto stuck = hand_over_->stuck()) verdict.harmful.push_back(*std::move(stuck));

@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kTickMilliseconds = 250;
 constexpr int kLookMilliseconds = 20;  // a flood begins a few thousand calls in that time
+constexpr int kRoomMilliseconds = 1;
 
 }  // namespace
 
@@ -36,16 +37,26 @@ void Acceptor::stop() {
 }
 
 void Acceptor::run() {
-  auto next_tick = std::chrono::steady_clock::now();
+  using Clock = std::chrono::steady_clock;
+  auto next_tick = Clock::now(), next_look = next_tick;
   pollfd events[] = {{wake_.number(), POLLIN, 0}, {listener_.descriptor(), POLLIN, 0}};
   while (!is_stopping_) {
-    ::poll(events, is_full_ ? 1 : 2, open_.empty() ? kTickMilliseconds : kLookMilliseconds);
-    if (!open_.empty() || is_full_) look();
+    const bool has_room = hand_.has_room(), is_taking = has_room && !is_full_;
+    events[1].revents = 0;
+    ::poll(events, is_taking ? 2 : 1,
+           !has_room                    ? kRoomMilliseconds
+           : open_.empty() && !is_full_ ? kTickMilliseconds
+                                        : kLookMilliseconds);
+    const auto now = Clock::now();
+    if ((!open_.empty() || is_full_) && now >= next_look) {
+      next_look = now + std::chrono::milliseconds(kLookMilliseconds);
+      look();
+    }
     if (events[1].revents != 0 && !is_full_ && !is_stopping_) accept_all();
     // A listener that has broken stays readable and gives nothing: the door's own questions tell of it.
     if ((events[1].revents & (POLLERR | POLLHUP | POLLNVAL)) != 0) events[1].fd = -1;
-    if (std::chrono::steady_clock::now() < next_tick) continue;
-    next_tick = std::chrono::steady_clock::now() + std::chrono::milliseconds(kTickMilliseconds);
+    if (now < next_tick) continue;
+    next_tick = now + std::chrono::milliseconds(kTickMilliseconds);
     forget_closed();
     tick_();
   }
@@ -91,13 +102,13 @@ void Acceptor::hand_waiting() {
   const auto now = std::chrono::steady_clock::now();
   std::erase_if(waiting_, [&](Waiting& one) {
     if (now - one.since < limits_.longest_wait && has_ending(one.peer)) return false;
-    hand_(std::move(one.socket), one.name);
+    hand_.take(std::move(one.socket), one.name);
     return true;
   });
 }
 
 void Acceptor::accept_all() {
-  for (;;) {
+  while (hand_.has_room()) {
     Listener::Accepted accepted = listener_.accept();
     switch (accepted.outcome) {
       case Listener::Accepted::Outcome::none:
@@ -118,7 +129,7 @@ void Acceptor::accept_all() {
     if (must_wait)
       waiting_.push_back({std::move(accepted.socket), accepted.peer, name, std::chrono::steady_clock::now()});
     else
-      hand_(std::move(accepted.socket), name);
+      hand_.take(std::move(accepted.socket), name);
   }
 }
 

@@ -30,10 +30,14 @@ class Acceptor {
     std::size_t connections, connections_per_peer;
     std::chrono::milliseconds longest_wait{1000};  ///< of a peer for what of his is being ended
   };
-  /// Takes over an accepted socket; must not block: while it does, nobody looks.
-  using Hand = std::function<void(Descriptor socket, const std::string& name)>;
+  /// Takes over accepted sockets.
+  struct Hand {
+    std::function<bool()> has_room;  ///< else those that come wait with the system
+    /// Must not block: while it does, nobody looks.
+    std::function<void(Descriptor socket, const std::string& name)> take;
+  };
 
-  /// What becomes of connections that are there, and whether others may come; asked often while there are any.
+  /// What becomes of connections that are there, and whether others may come; asked every 20 ms while there are any.
   using Look = std::function<FloodGuard::Verdict(const std::vector<FloodGuard::Open>&)>;
 
   /// tick   called a few times a second.

@@ -15,6 +15,11 @@ HandOver::HandOver(std::vector<Lane> lanes, std::chrono::milliseconds patience)
   }
 }
 
+bool HandOver::has_room() {
+  const std::lock_guard lock(mutex_);
+  return waiting_.size() < lanes_.size();
+}
+
 void HandOver::hand(Descriptor socket, std::string name) {
   {
     const std::lock_guard lock(mutex_);

@@ -30,6 +30,9 @@ class HandOver {
   HandOver(std::vector<Lane> lanes, std::chrono::milliseconds patience);
   ~HandOver() { stop(); }
 
+  /// Whether what is handed over now is soon taken. What waits with the system instead costs nothing, and may have been
+  /// given up by then.
+  bool has_room();
   /// name   of the connection.
   void hand(Descriptor socket, std::string name);
   /// The connection that has kept its lane longest, if others wait and that is too long: it should be ended. Each once.

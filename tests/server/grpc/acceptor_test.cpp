@@ -41,12 +41,14 @@ class AcceptorTest : public testing::Test {
  protected:
   /// Keeps what it is handed, and greets it.
   Acceptor make(Acceptor::Limits limits) {
-    return {*Listener::open("127.0.0.1:0"), limits,
-            [this](Descriptor socket, const std::string&) {
-              EXPECT_EQ(::send(socket.number(), "!", 1, MSG_NOSIGNAL), 1);
-              const std::lock_guard lock(mutex_);
-              held_.push_back(std::move(socket));
-            },
+    return {*Listener::open("127.0.0.1:0"),
+            limits,
+            {[this] { return has_room_.load(); },
+             [this](Descriptor socket, const std::string&) {
+               EXPECT_EQ(::send(socket.number(), "!", 1, MSG_NOSIGNAL), 1);
+               const std::lock_guard lock(mutex_);
+               held_.push_back(std::move(socket));
+             }},
             [this](const std::vector<FloodGuard::Open>&) {
               const std::lock_guard lock(mutex_);
               return verdict_;
@@ -66,6 +68,7 @@ class AcceptorTest : public testing::Test {
   std::vector<Descriptor> held_;
   FloodGuard::Verdict verdict_;
   std::atomic<int> ticks_{0};
+  std::atomic<bool> has_room_{true};
 };
 
 TEST_F(AcceptorTest, TakesSoManyAndRefusesTheRest) {
@@ -130,6 +133,17 @@ TEST_F(AcceptorTest, LetsOthersWaitWhileItIsFull) {
   EXPECT_FALSE(has_more(second));
   tell({});
   EXPECT_FALSE(is_refused(second));
+}
+
+TEST_F(AcceptorTest, LetsOthersWaitWithTheSystemWhileTheyWouldNotBeTaken) {
+  Acceptor acceptor = make({.connections = 2, .connections_per_peer = 2});
+  has_room_ = false;
+  std::vector<Descriptor> clients;
+  for (int n = 0; n < 6; ++n) clients.push_back(connect_to(acceptor.port()));
+  EXPECT_FALSE(has_more(clients[0]));
+  EXPECT_EQ(acceptor.connections(), 0u);  // none of them is refused either
+  has_room_ = true;
+  EXPECT_FALSE(is_refused(clients[0]) || is_refused(clients[1]));
 }
 
 TEST_F(AcceptorTest, TicksAndStops) {

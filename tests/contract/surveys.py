@@ -7,7 +7,7 @@ def raw_cube(inlines, crosslines, samples, value=lambda i, j, k: float(i + j + k
         struct.pack("<f", value(i, j, k)) for i in range(inlines) for j in range(crosslines) for k in range(samples))
 
 
-def _segy_head(samples):
+def segy_head(samples):
     binary = bytearray(400)
     struct.pack_into(">h", binary, 16, 4000)
     struct.pack_into(">h", binary, 20, samples)
@@ -17,7 +17,7 @@ def _segy_head(samples):
 
 def seismic_line(traces, samples):
     """A SEG-Y file whose trace headers number no inlines and crosslines."""
-    data = _segy_head(samples)
+    data = segy_head(samples)
     for trace in range(traces):
         header = bytearray(240)
         struct.pack_into(">ii", header, 0, trace + 1, trace + 1)
@@ -29,7 +29,7 @@ def seismic_line(traces, samples):
 
 def two_grids(lines, traces, samples):
     """A SEG-Y file whose trace headers number two grids, at the bytes 189 and 193 and at 5 and 21."""
-    data = _segy_head(samples)
+    data = segy_head(samples)
     for trace in range(lines * traces):
         header = bytearray(240)
         struct.pack_into(">ii", header, 188, trace // traces + 1, trace % traces + 1)

@@ -7,9 +7,14 @@ import shutil
 import socket
 import struct
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "contract"))
+
+from surveys import segy_head, two_grids  # noqa: E402  (of the contract's tests)
 
 GEOSIS = os.environ["GEOSIS"]
 BODY = ("--range", "0.55", "inf")
@@ -30,27 +35,6 @@ def decoded_counts(path):
         subprocess.run(["draco_decoder", "-i", path, "-o", mesh], check=True, capture_output=True)
         lines = mesh.read_text(encoding="ascii").splitlines()
     return sum(line.startswith("v ") for line in lines), sum(line.startswith("f ") for line in lines)
-
-
-def segy_head(samples):
-    binary = bytearray(400)
-    struct.pack_into(">h", binary, 16, 4000)
-    struct.pack_into(">h", binary, 20, samples)
-    struct.pack_into(">h", binary, 24, 5)
-    return bytearray(b"\x40" * 3200) + binary
-
-
-def two_grids(lines, traces, samples):
-    """A survey as SEG-Y whose trace headers number two grids, at the bytes 189 and 193 and at 5 and 21."""
-    data = segy_head(samples)
-    for trace in range(lines * traces):
-        header = bytearray(240)
-        struct.pack_into(">ii", header, 188, trace // traces + 1, trace % traces + 1)
-        struct.pack_into(">i", header, 4, trace % lines + 1)
-        struct.pack_into(">i", header, 20, trace // lines + 1)
-        struct.pack_into(">hh", header, 114, samples, 4000)
-        data += header + struct.pack(f">{samples}f", *map(float, range(samples)))
-    return bytes(data)
 
 
 def seismic_line(traces, samples):

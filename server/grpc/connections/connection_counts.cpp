@@ -56,16 +56,17 @@ std::int64_t id_in(const Json& object, const char* name) {
   return static_cast<std::int64_t>(number_in(object, name));
 }
 
-template <class Visit>
-void visit_servers(Visit visit) {
+/// Ids of all servers of this process.
+std::vector<std::int64_t> servers() {
+  std::vector<std::int64_t> ids;
   for (std::int64_t first = 0;;) {
     const Json page = document(grpc_channelz_get_servers(first));
-    const Json& servers = in(page, "server");
-    for (const Json& server : servers) {
-      first = id_in(in(server, "ref"), "serverId") + 1;
-      visit(first - 1);
+    const Json& found = in(page, "server");
+    for (const Json& server : found) {
+      ids.push_back(id_in(in(server, "ref"), "serverId"));
+      first = ids.back() + 1;
     }
-    if (servers.empty() || in(page, "end") == true) return;
+    if (found.empty() || in(page, "end") == true) return ids;
   }
 }
 
@@ -98,7 +99,7 @@ std::string escaped(std::string_view host) {
 
 std::vector<ConnectionCounts> count_connections(const std::function<bool(const std::string& name)>& is_wanted) {
   std::vector<ConnectionCounts> all;
-  visit_servers([&](std::int64_t server) {
+  for (const std::int64_t server : servers()) {
     for (std::int64_t first = 0;;) {
       const Json page = document(grpc_channelz_get_server_sockets(server, first, kSocketsAtOnce));
       const Json& sockets = in(page, "socketRef");
@@ -108,9 +109,9 @@ std::vector<ConnectionCounts> count_connections(const std::function<bool(const s
         std::string name = connection_in(socket);
         if (is_wanted(name)) all.push_back(counts_of(std::move(name), id));
       }
-      if (sockets.empty() || in(page, "end") == true) return;
+      if (sockets.empty() || in(page, "end") == true) break;
     }
-  });
+  }
   return all;
 }
 
